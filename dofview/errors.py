@@ -1,12 +1,12 @@
 """Every failure a person can cause or meet, in one tree; anything else that is raised is a bug.
 
-    DofviewError             one line: what, where, what would be accepted
-    ├── InputError           exit status 2: a file, flag, preset or view that cannot be used
-    │   ├── ModelError       a scene file: names the file, the object in it and the reason
-    │   └── SettingsError    a view, preset or parameter: names the key, the value and the range
-    ├── OutputError          exit status 3: a result that cannot be written
-    └── GLError              exit status 4: no usable OpenGL, with the remedy
-        └── ShaderError      a shader that does not compile, with file:line and an excerpt
+DofviewError             one line: what, where, what would be accepted
+├── InputError           exit status 2: a file, flag, preset or view that cannot be used
+│   ├── ModelError       a scene file: names the file, the object in it and the reason
+│   └── SettingsError    a view, preset or parameter: names the key, the value and the range
+├── OutputError          exit status 3: a result that cannot be written
+└── GLError              exit status 4: no usable OpenGL, with the remedy
+    └── ShaderError      a shader that does not compile, with file:line and an excerpt
 """
 
 from __future__ import annotations
