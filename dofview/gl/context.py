@@ -1,0 +1,71 @@
+"""Getting OpenGL, with or without a screen, and everything that belongs to one context."""
+
+from __future__ import annotations
+
+import sys
+
+import moderngl
+
+from dofview.errors import GLError
+from dofview.gl.shaders import ShaderLibrary
+from dofview.gl.targets import TargetPool
+from dofview.gl.timing import SOFTWARE_RENDERERS, Profile
+
+REQUIRED = 330
+"""What the viewer and most methods need; a method may ask for more (`REQUIRES_GL`). macOS stops at 410."""
+
+MOST_BLOCKS = 256
+
+REMEDY = "install a graphics driver, or Mesa's software OpenGL (Debian: apt install libgl1-mesa-dri libegl1 libgl1)"
+
+
+class Gpu:
+    """One OpenGL context with its shaders, images and profile. Passed along; never global."""
+
+    def __init__(self, ctx: moderngl.Context):
+        if ctx.version_code < REQUIRED:
+            found, need = divmod(ctx.version_code, 100), divmod(REQUIRED, 100)
+            raise GLError(
+                f"OpenGL {need[0]}.{need[1] // 10} core is needed, this machine offers "
+                f"{found[0]}.{found[1] // 10} ({ctx.info['GL_RENDERER']}); {REMEDY}"
+            )
+        self.ctx = ctx
+        self.renderer: str = ctx.info["GL_RENDERER"]
+        self.version_code: int = ctx.version_code
+        self.software = any(name in self.renderer for name in SOFTWARE_RENDERERS)
+        self.max_size: int = ctx.info["GL_MAX_TEXTURE_SIZE"]
+        self.max_layers: int = ctx.info["GL_MAX_ARRAY_TEXTURE_LAYERS"]
+        self.shaders = ShaderLibrary(ctx)
+        self.targets = TargetPool(ctx)
+        self.profile = Profile(ctx, self.software)
+        self.facts: dict[str, object] = {}
+        self._blocks: dict[bytes, moderngl.Buffer] = {}
+
+    def block(self, data: bytes) -> moderngl.Buffer:
+        """Return a uniform buffer holding `data`. Buffers are never rewritten, so no draw in flight can be disturbed."""
+        buffer = self._blocks.pop(data, None) or self.ctx.buffer(data)
+        self._blocks[data] = buffer
+        if len(self._blocks) > MOST_BLOCKS:
+            self._blocks.pop(next(iter(self._blocks))).release()
+        return buffer
+
+    def release(self) -> None:
+        """Release every object; the context itself stays with whoever made it."""
+        self.targets.release()
+        self.shaders.release()
+        for buffer in self._blocks.values():
+            buffer.release()
+        self._blocks.clear()
+
+
+def create_headless() -> Gpu:
+    """Make a context without a window: through EGL on Linux, the system's own way elsewhere."""
+    settings = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+    # moderngl raises bare Exception for a missing library, device, driver or version: all mean no usable OpenGL.
+    try:
+        ctx = moderngl.create_context(standalone=True, require=REQUIRED, **settings)
+    except Exception as error:
+        reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+        need = f"{REQUIRED // 100}.{REQUIRED % 100 // 10}"
+        raise GLError(f"no usable OpenGL {need} without a screen ({reason}); {REMEDY}") from error
+    return Gpu(ctx)

@@ -1,0 +1,79 @@
+"""Full-screen passes: a shader, the images it writes, the images it reads; state is set anew for each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import moderngl
+from pydantic import BaseModel
+
+from dofview.gl.context import Gpu
+from dofview.gl.shaders import Defines, Program
+from dofview.gl.targets import Image
+from dofview.gl.uniforms import block_bytes, block_glsl
+
+ADD = (moderngl.ONE, moderngl.ONE)
+OVER = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
+UNDER = (moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE)
+
+Blocks = Mapping[str, BaseModel]
+Textures = Mapping[str, Image | moderngl.Texture | moderngl.TextureArray]
+
+
+def bind(gpu: Gpu, program: Program, textures: Textures, blocks: Blocks, values: Mapping[str, object]) -> None:
+    """Bind what a program reads. A name its source does not declare is a bug; one the compiler removed is not."""
+    for unit, (name, image) in enumerate(textures.items()):
+        if name not in program.samplers:
+            raise KeyError(f"no sampler {name!r}; the shader declares {sorted(program.samplers)}")
+        texture = image.texture if isinstance(image, Image) else image
+        texture.use(unit)
+        if name in program.gl:
+            program.gl[name] = unit
+    missing = {name for name in program.samplers - textures.keys() if name in program.gl}
+    if missing:
+        raise KeyError(f"samplers without an image: {sorted(missing)}")
+    for name, value in values.items():
+        if name not in program.values:
+            raise KeyError(f"no uniform {name!r}; the shader declares {sorted(program.values)}")
+        if name not in program.gl:
+            continue
+        if isinstance(value, bytes):
+            program.gl[name].write(value)
+        else:
+            program.gl[name] = value
+    for binding, (name, block) in enumerate(blocks.items()):
+        if name in program.gl:
+            program.gl[name].binding = binding
+            gpu.block(block_bytes(block)).bind_to_uniform_block(binding)
+
+
+def block_texts(blocks: Blocks) -> dict[str, str]:
+    """GLSL of each block, for `#include <Name>`."""
+    return {name: block_glsl(type(block), name) for name, block in blocks.items()}
+
+
+def draw(
+    gpu: Gpu, shader: str, into: Image | Sequence[Image], *, textures: Textures | None = None,
+    blocks: Blocks | None = None, values: Mapping[str, object] | None = None, defines: Defines | None = None,
+    blend: tuple | None = None, clear: bool = False, vertex: str = "pass/fullscreen.vert",
+) -> None:  # fmt: skip
+    """Run the fragment shader `shader` over every pixel of `into` (one image, or several of one size)."""
+    images = (into,) if isinstance(into, Image) else tuple(into)
+    blocks = blocks or {}
+    program = gpu.shaders.program(vertex, shader, defines=defines, blocks=block_texts(blocks))
+    framebuffer = gpu.targets.framebuffer(images)
+    framebuffer.use()
+    ctx = gpu.ctx
+    ctx.viewport = (0, 0, *images[0].size)
+    ctx.enable_only(moderngl.BLEND if blend else moderngl.NOTHING)
+    if blend:
+        ctx.blend_func = blend
+        ctx.blend_equation = moderngl.FUNC_ADD
+    if clear:
+        framebuffer.clear()
+    bind(gpu, program, textures or {}, blocks, values or {})
+    if 0 not in program.arrays:
+        program.arrays[0] = ctx.vertex_array(program.gl, [])
+    program.arrays[0].render(moderngl.TRIANGLES, vertices=3)
+    gpu.profile.count("passes")
+    gpu.profile.count("fragments", images[0].size[0] * images[0].size[1] * max(images[0].shape.layers, 1))

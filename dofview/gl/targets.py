@@ -1,0 +1,131 @@
+"""Images that passes write and read, kept by name: same name and shape is the same image, another shape replaces it.
+
+Nothing else creates a texture whose size depends on the window, so resizing or switching methods leaves nothing behind:
+`collect()` releases what has not been asked for lately.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What an image is made of: size in pixels, 1–4 components, moderngl dtype, layers (0: not an array)."""
+
+    size: tuple[int, int]
+    components: int = 4
+    dtype: str = "f4"
+    layers: int = 0
+    linear: bool = False
+
+
+class Image:
+    """A named texture in linear light or data; `texture` is the moderngl object."""
+
+    def __init__(self, ctx: moderngl.Context, name: str, shape: Shape):
+        self.name = name
+        self.shape = shape
+        if shape.layers:
+            self.texture = ctx.texture_array((*shape.size, shape.layers), shape.components, dtype=shape.dtype)
+        else:
+            self.texture = ctx.texture(shape.size, shape.components, dtype=shape.dtype)
+        integer = shape.dtype[0] in "iu"
+        mode = moderngl.LINEAR if shape.linear and not integer else moderngl.NEAREST
+        self.texture.filter = (mode, mode)
+        self.texture.repeat_x = self.texture.repeat_y = False
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """(width, height) in pixels."""
+        return self.shape.size
+
+    def pixels(self) -> np.ndarray:
+        """Read back (height, width, components), or (layers, …) for an array, row 0 on top. Nobody else flips."""
+        width, height = self.size
+        data = np.frombuffer(self.texture.read(alignment=1), dtype=self.shape.dtype)
+        data = data.reshape(max(self.shape.layers, 1), height, width, self.shape.components)[:, ::-1]
+        return np.ascontiguousarray(data if self.shape.layers else data[0])
+
+    def write(self, pixels: np.ndarray) -> None:
+        """Upload (height, width, components), row 0 on top."""
+        self.texture.write(np.ascontiguousarray(pixels[::-1], dtype=self.shape.dtype).tobytes(), alignment=1)
+
+    def release(self) -> None:
+        self.texture.release()
+
+
+class TargetPool:
+    """Every image and framebuffer of one context, by name."""
+
+    def __init__(self, ctx: moderngl.Context):
+        self._ctx = ctx
+        self._images: dict[str, Image] = {}
+        self._depths: dict[tuple[int, int], moderngl.Renderbuffer] = {}
+        self._framebuffers: dict[tuple, moderngl.Framebuffer] = {}
+        self._used: dict[str, int] = {}
+        self._depth_used: dict[tuple[int, int], int] = {}
+        self._clock = 0
+
+    def image(
+        self, name: str, size: tuple[int, int], components: int = 4, dtype: str = "f4", layers: int = 0,
+        linear: bool = False,
+    ) -> Image:  # fmt: skip
+        """Return the image called `name`, made anew only when its shape changed. Contents persist between frames."""
+        shape = Shape((int(size[0]), int(size[1])), components, dtype, layers, linear)
+        image = self._images.get(name)
+        if image is None or image.shape != shape:
+            if image is not None:
+                self._release(name)
+            image = self._images[name] = Image(self._ctx, name, shape)
+        self._used[name] = self._clock
+        return image
+
+    def framebuffer(self, images: Sequence[Image], depth: bool = False) -> moderngl.Framebuffer:
+        """Return the framebuffer with these colour attachments, and a shared depth buffer of their size if asked."""
+        key = (tuple(image.texture.glo for image in images), depth)
+        if key not in self._framebuffers:
+            buffer = self._depth(images[0].size) if depth else None
+            self._framebuffers[key] = self._ctx.framebuffer([image.texture for image in images], buffer)
+        if depth:
+            self._depth_used[images[0].size] = self._clock
+        return self._framebuffers[key]
+
+    def named(self, prefix: str = "") -> list[Image]:
+        """All living images whose name starts with `prefix`, by name: what a pass browser lists."""
+        return [self._images[name] for name in sorted(self._images) if name.startswith(prefix)]
+
+    def collect(self, keep_frames: int = 2) -> None:
+        """End a frame: release what was not asked for in the last `keep_frames` frames."""
+        self._clock += 1
+        for name in [n for n, used in self._used.items() if used < self._clock - keep_frames]:
+            self._release(name)
+        for size in [s for s, used in self._depth_used.items() if used < self._clock - keep_frames]:
+            self._drop_framebuffers(lambda fbo, size=size: fbo.size == size)
+            self._depths.pop(size).release()
+            del self._depth_used[size]
+
+    def release(self) -> None:
+        """Release everything."""
+        self.collect(keep_frames=-1)
+
+    def _depth(self, size: tuple[int, int]) -> moderngl.Renderbuffer:
+        if size not in self._depths:
+            self._depths[size] = self._ctx.depth_renderbuffer(size)
+        return self._depths[size]
+
+    def _release(self, name: str) -> None:
+        image = self._images.pop(name)
+        self._used.pop(name, None)
+        glo = image.texture.glo
+        for key in [k for k in self._framebuffers if glo in k[0]]:
+            self._framebuffers.pop(key).release()
+        image.release()
+
+    def _drop_framebuffers(self, doomed) -> None:
+        for key in [k for k, fbo in self._framebuffers.items() if k[1] and doomed(fbo)]:
+            self._framebuffers.pop(key).release()

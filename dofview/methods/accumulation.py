@@ -1,0 +1,40 @@
+"""The reference as a method: the scene drawn through many points of the lens and averaged.
+
+Paul Haeberli and Kurt Akeley: The Accumulation Buffer. SIGGRAPH 1990. The work is in `render/reference.py`, which the
+window also runs a few views at a time.
+"""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from dofview.gl.targets import Image
+from dofview.methods.method import Params as BaseParams
+from dofview.render.frame import Frame
+from dofview.render.reference import Reference
+
+TITLE = "Accumulation buffer (reference)"
+CITATION = (
+    "P. Haeberli, K. Akeley. The Accumulation Buffer: Hardware Support for High-Quality Rendering. SIGGRAPH 1990."
+)
+REQUIRES_GL = 330
+GUARD_BAND = False
+
+
+class Params(BaseParams):
+    """How many views, and how they are placed."""
+
+    views: int = Field(
+        default=256, ge=1, le=65536, description="Views through the lens.", json_schema_extra={"symbol": "N"}
+    )
+    antialias: bool = Field(default=False, description="Also move each view inside the pixel.")
+    progressive: bool = Field(
+        default=False, description="Scrambled Sobol points, good at every count, instead of a spiral for a fixed one."
+    )
+
+
+def render(frame: Frame, params: Params) -> Image:
+    """Return the mean of `params.views` views."""
+    reference = Reference(frame, antialias=params.antialias, total=None if params.progressive else params.views)
+    reference.add(params.views)
+    return reference.mean()

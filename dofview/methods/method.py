@@ -1,0 +1,73 @@
+"""The contract of a depth-of-field method, and the recipe it writes its passes in.
+
+A method is a module with a title, a citation, a `Params` model and `render(frame, params) -> Image`: from the images a
+frame offers to one linear image of the frame's canvas size. Slider, flag, preset key, GLSL block and docs row all come
+from the fields of `Params`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+from pydantic import BaseModel, ConfigDict
+
+from dofview.gl.passes import draw
+from dofview.gl.targets import Image
+from dofview.render.frame import Frame
+
+
+class Params(BaseModel):
+    """Base of every method's parameters: frozen, unknown names refused, each field with default, range and words.
+
+    A field says its unit and the paper's symbol in `json_schema_extra={"unit": "px", "symbol": "δ"}`.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Method(Protocol):
+    """What a module in `dofview.methods` offers."""
+
+    TITLE: str
+    CITATION: str
+    REQUIRES_GL: int
+    """Lowest OpenGL version code, 330 or more."""
+    GUARD_BAND: bool
+    """Whether what lies just outside the picture must be on the canvas to blur in."""
+    Params: type[Params]
+
+    def render(self, frame: Frame, params: Params) -> Image: ...
+
+
+class Recipe:
+    """Passes of one method over one frame: shaders from its own folder, images under its own name.
+
+    The blocks Lens (`include/lens.glsl`) and Params are there for every shader that includes them.
+    """
+
+    def __init__(self, frame: Frame, name: str, params: Params):
+        self.frame = frame
+        self.gpu = frame.gpu
+        self.name = name
+        self._blocks = {"Lens": frame.lens_block, "Params": params}
+
+    def image(
+        self, name: str, size: tuple[int, int] | None = None, components: int = 4, dtype: str = "f4",
+        linear: bool = False, layers: int = 0,
+    ) -> Image:  # fmt: skip
+        """Return the method's image `name`, of the canvas size when none is given."""
+        return self.gpu.targets.image(f"{self.name}/{name}", size or self.frame.size, components, dtype, layers, linear)
+
+    def draw(
+        self, shader: str, into: Image | Sequence[Image], *, values: Mapping[str, object] | None = None,
+        defines: Mapping[str, object] | None = None, blocks: Mapping[str, BaseModel] | None = None,
+        blend: tuple | None = None, clear: bool = False, **textures: Image,
+    ) -> None:  # fmt: skip
+        """Run `shader` of the method's folder (or of shaders/ when it has a folder of its own) into `into`."""
+        path = shader if "/" in shader else f"methods/{self.name}/{shader}"
+        with self.gpu.profile.section(f"{self.name}/{path.rsplit('/', 1)[-1].removesuffix('.frag')}"):
+            draw(
+                self.gpu, path, into, textures=textures, blocks={**self._blocks, **(blocks or {})}, values=values,
+                defines=defines, blend=blend, clear=clear,
+            )  # fmt: skip

@@ -1,0 +1,156 @@
+"""What a method is given: a scene seen through one lens, from which it takes the images it needs.
+
+Nothing is rendered that was not asked for, and nothing twice: images depend on the geometry key (scene, camera, canvas,
+background), not on the lens, so moving the focus or switching methods draws no triangle.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from pydantic import BaseModel, ConfigDict
+
+from dofview.gl.context import Gpu
+from dofview.gl.filters import reduce_blocks
+from dofview.gl.targets import Image
+from dofview.lens import CocLaw, Lens, focal_px
+from dofview.render.raster import LightsBlock, Projection, depth_range, draw_scene, projection
+from dofview.render.upload import GpuScene
+from dofview.scene.camera import Camera
+
+
+class Surfaces(NamedTuple):
+    """One surface per pixel: linear colour (alpha 1 where something is) and inverse depth 1/z (0 where nothing is)."""
+
+    color: Image
+    inverse_depth: Image
+
+
+class DepthRange(NamedTuple):
+    """Extremes of 1/z over an image; `farthest` is 0 where background shows."""
+
+    nearest: float
+    farthest: float
+    empty: bool
+
+
+class LensBlock(BaseModel):
+    """The lens as shaders read it (`include/lens.glsl`); `sigma` is the matched Gaussian σ over the CoC radius."""
+
+    model_config = ConfigDict(frozen=True)
+
+    scale: float
+    inverse_focus: float
+    sigma: float
+
+
+class FrameCache:
+    """Images that outlive a frame, each with the key it was rendered for."""
+
+    def __init__(self) -> None:
+        self._held: dict[str, tuple[object, Image]] = {}
+        self.values: dict[object, object] = {}
+
+    def holds(self, key: object, image: Image) -> bool:
+        """Whether `image` still is what `key` asks for; if not, the caller renders it now."""
+        found = self._held.get(image.name)
+        if found is not None and found[0] == key and found[1] is image:
+            return True
+        self._held[image.name] = (key, image)
+        return False
+
+    def clear(self) -> None:
+        self._held.clear()
+        self.values.clear()
+
+
+class Frame:
+    """One scene, camera and lens on one canvas; `size` is the canvas with its guard band, pixels."""
+
+    def __init__(
+        self, gpu: Gpu, scene: GpuScene, camera: Camera, lens: Lens, size: tuple[int, int], *, guard: int = 0,
+        background: tuple[float, float, float] = (0.0, 0.0, 0.0), cache: FrameCache | None = None,
+    ):  # fmt: skip
+        self.gpu = gpu
+        self.scene = scene
+        self.camera = camera
+        self.lens = lens
+        self.inner_size = size
+        self.guard = guard
+        self.size = (size[0] + 2 * guard, size[1] + 2 * guard)
+        self.background = background
+        self.coc: CocLaw = lens.coc(focal_px(size[1], camera.vfov_deg))
+        self.lens_block = LensBlock(
+            scale=self.coc.scale, inverse_focus=self.coc.inverse_focus, sigma=lens.matched_sigma_fraction
+        )
+        self.lights = LightsBlock.at(camera)
+        self.cache = cache or FrameCache()
+        self.geometry_key = (id(scene), camera, size, guard, background)
+
+    def projection(self) -> Projection:
+        """The pinhole projection through the lens centre."""
+        return projection(self.scene, self.camera, self.inner_size, self.guard)
+
+    def pinhole(self) -> Surfaces:
+        """The nearest surfaces, over the background: colour is defined everywhere."""
+        return self._surfaces("pinhole", None, None)
+
+    def peel(self, index: int) -> Surfaces | None:
+        """The surfaces behind `index` others, alpha 0 where there are none; None when there are none at all.
+
+        Peel 0 is the pinhole picture. Each costs one pass over the geometry, once.
+        """
+        if index == 0:
+            return self.pinhole()
+        before = self.peel(index - 1)
+        if before is None:
+            return None
+        surfaces = self._surfaces(f"peel{index}", "render/reject_peel.glsl", before)
+        return surfaces if self.cache.values[(self.geometry_key, surfaces.color.name)] else None
+
+    def depth_range(self) -> DepthRange:
+        """Extremes of 1/z in the pinhole picture, guard band included. Read back once per geometry key."""
+        key = (self.geometry_key, "depth range")
+        if key not in self.cache.values:
+            least, greatest, empty, _ = reduce_blocks(
+                self.gpu, self.pinhole().inverse_depth, "render/depth_range.frag", "depth range/"
+            )
+            farthest = 0.0 if empty or greatest == 0.0 else float(least)
+            self.cache.values[key] = DepthRange(float(greatest), farthest, bool(empty))
+        return self.cache.values[key]  # type: ignore[return-value]
+
+    def coc_range(self) -> tuple[float, float]:
+        """Signed CoC radii of the nearest and the farthest visible surface, pixels."""
+        depths = self.depth_range()
+        return float(self.coc.radius_px(depths.nearest)), float(self.coc.radius_px(depths.farthest))
+
+    def _surfaces(self, name: str, reject: str | None, before: Surfaces | None) -> Surfaces:
+        targets = self.gpu.targets
+        color = targets.image(f"frame/{name}", self.size)
+        inverse_depth = targets.image(f"frame/{name} inverse depth", self.size, components=1)
+        if self.cache.holds((self.geometry_key, name), color) & self.cache.holds(
+            (self.geometry_key, name), inverse_depth
+        ):
+            return Surfaces(color, inverse_depth)
+        textures = {"peeled_inverse_depth": before.inverse_depth} if before else {}
+        query = self.gpu.ctx.query(samples=True)
+        with self.gpu.profile.section(f"scene/{name}"), query:
+            draw_scene(
+                self.gpu, self.scene, self.projection(), (color, inverse_depth), lights=self.lights, reject=reject,
+                background=(0.0, 0.0, 0.0) if reject else self.background, textures=textures,
+            )  # fmt: skip
+        if reject:
+            self.cache.values[(self.geometry_key, color.name)] = query.samples > 0
+        return Surfaces(color, inverse_depth)
+
+
+def guard_band(scene: GpuScene, camera: Camera, lens: Lens, size: tuple[int, int], most_px: int) -> int:
+    """Pixels around the picture whose blur reaches into it: the largest CoC radius in the scene, up to `most_px`,
+    rounded up to 8 so that a small change of the lens does not draw the scene anew."""
+    if not scene.draws or lens.radius == 0.0:
+        return 0
+    near, far = depth_range(scene, camera)
+    law = lens.coc(focal_px(size[1], camera.vfov_deg))
+    largest = max(abs(float(law.radius_px(1.0 / near))), abs(float(law.radius_px(1.0 / far))))
+    return min(math.ceil(min(largest, most_px) / 8) * 8, most_px)

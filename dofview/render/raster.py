@@ -1,0 +1,172 @@
+"""Drawing the scene through the lens centre or any point of the lens, into any set of images."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+from pydantic import BaseModel, ConfigDict
+
+from dofview.gl.context import Gpu
+from dofview.gl.passes import Blocks, Textures, bind, block_texts
+from dofview.gl.targets import Image
+from dofview.render.upload import Draw, GpuScene
+from dofview.scene.camera import Camera
+
+Vec4 = tuple[float, float, float, float]
+
+
+class LightsBlock(BaseModel):
+    """Three directional lights and a sky that stand with the camera, as VTK's light kit does: a scene is lit well from
+    every side, and a scene turned together with its camera looks the same. Directions point to the light."""
+
+    model_config = ConfigDict(frozen=True)
+
+    key_direction: Vec4
+    key_radiance: Vec4 = (2.7, 2.6, 2.4, 0.0)
+    fill_direction: Vec4
+    fill_radiance: Vec4 = (0.55, 0.6, 0.7, 0.0)
+    back_direction: Vec4
+    back_radiance: Vec4 = (0.7, 0.7, 0.75, 0.0)
+    up: Vec4
+    zenith: Vec4 = (0.42, 0.46, 0.52, 0.0)
+    ground: Vec4 = (0.16, 0.145, 0.13, 0.0)
+
+    @classmethod
+    def at(cls, camera: Camera) -> LightsBlock:
+        """The rig of a camera, in world directions."""
+        axes = camera.axes()
+
+        def direction(right: float, up: float, backward: float) -> Vec4:
+            toward = np.array([right, up, backward]) @ axes
+            return (*(toward / np.linalg.norm(toward)).tolist(), 0.0)
+
+        return cls(
+            key_direction=direction(-0.5, 0.75, 0.7), fill_direction=direction(0.9, 0.15, 0.6),
+            back_direction=direction(0.2, 0.6, -0.9), up=direction(0.0, 1.0, 0.0),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Projection:
+    """Where the scene is drawn from: `clip_from_local` (4, 4) float64 and the eye in local space."""
+
+    clip_from_local: np.ndarray
+    eye: np.ndarray
+
+
+def depth_range(scene: GpuScene, camera: Camera) -> tuple[float, float]:
+    """Near and far plane fitted to the scene, scene units: as tight as its bounds allow, never a hint's."""
+    view = camera.view_matrix(scene.origin)
+    low, high = scene.local_bounds
+    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+    depths = -(corners @ view[2, :3] + view[2, 3])
+    far = max(float(depths.max()) * 1.0001, camera.distance * 1e-3)
+    # 24 bits of depth over a ratio of 20000 separate surfaces a part in a thousand apart out to the far plane.
+    near = max(float(depths.min()) * 0.9999, far / 20000.0)
+    return near, max(far, near * 1.001)
+
+
+def projection(
+    scene: GpuScene, camera: Camera, size: tuple[int, int], guard: int = 0, *, lens_point: tuple[float, float] = (0, 0),
+    focus_distance: float = np.inf, jitter_px: tuple[float, float] = (0, 0), near_far: tuple[float, float] | None = None,
+) -> Projection:  # fmt: skip
+    """Off-axis projection from a point of the lens (Haeberli and Akeley 1990): the plane in focus stays in place.
+
+    `size` is the picture without its `guard` band, pixels; `lens_point` is in scene units right and up of the centre,
+    `jitter_px` moves the sample point inside the pixel.
+    """
+    near, far = near_far or depth_range(scene, camera)
+    width, height = size
+    p11 = 1.0 / np.tan(np.radians(camera.vfov_deg) / 2.0) * height / (height + 2 * guard)
+    p00 = 1.0 / np.tan(np.radians(camera.vfov_deg) / 2.0) * height / (width + 2 * guard)
+    right, up = lens_point
+    matrix = np.zeros((4, 4))
+    # Depth is −z in view space, so what is added per unit of depth stands negated in the z column.
+    matrix[0, 0], matrix[0, 2] = p00, -p00 * right / focus_distance + 2.0 * jitter_px[0] / (width + 2 * guard)
+    matrix[1, 1], matrix[1, 2] = p11, -p11 * up / focus_distance + 2.0 * jitter_px[1] / (height + 2 * guard)
+    matrix[2, 2], matrix[2, 3] = -(far + near) / (far - near), -2.0 * far * near / (far - near)
+    matrix[3, 2] = -1.0
+    view = camera.view_matrix(scene.origin)
+    view[0, 3] -= right
+    view[1, 3] -= up
+    eye = np.asarray(camera.position) - scene.origin + np.array([right, up, 0.0]) @ camera.axes()
+    return Projection(matrix @ view, eye)
+
+
+def draw_scene(
+    gpu: Gpu, scene: GpuScene, view: Projection, into: Sequence[Image], *, lights: LightsBlock,
+    background: tuple[float, float, float] = (0.0, 0.0, 0.0), background_alpha: float = 0.0, lod_bias: float = 0.0,
+    reject: str | None = None, geometry: str | None = None, textures: Textures | None = None,
+    blocks: Blocks | None = None, values: Mapping[str, object] | None = None,
+    defines: Mapping[str, object] | None = None, framebuffer: moderngl.Framebuffer | None = None,
+) -> None:  # fmt: skip
+    """Draw the scene's nearest surfaces into `into`: colour, then inverse depth (0 where nothing is).
+
+    `reject` names the GLSL file of a test that leaves fragments out (shaders/render/scene.frag); `textures`, `blocks`
+    and `values` are what it reads. `geometry` names a geometry shader and `framebuffer` its layered target.
+    """
+    ctx = gpu.ctx
+    target = framebuffer or gpu.targets.framebuffer(into, depth=True)
+    target.use()
+    ctx.viewport = (0, 0, *into[0].size)
+    # One clear gives all attachments the same colour, so the background follows on the colour image alone.
+    target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+    if any(background) or background_alpha:
+        gpu.targets.framebuffer(into[:1]).clear(*background, background_alpha)
+        target.use()
+        ctx.viewport = (0, 0, *into[0].size)
+    ctx.enable_only(moderngl.DEPTH_TEST)
+    ctx.depth_func = "<"
+    for draw in scene.draws:
+        if not _visible(draw, view.clip_from_local):
+            gpu.profile.count("draws culled")
+            continue
+        material = scene.materials.items[draw.material]
+        all_blocks = {"Material": material.block, "Lights": lights, **(blocks or {})}
+        all_defines = {**material.features, **(defines or {})}
+        if reject is not None:
+            all_defines |= {"HAS_REJECT": 1, "REJECT": reject}
+        stages = ["render/scene.vert", *([geometry] if geometry else []), "render/scene.frag"]
+        program = gpu.shaders.program(*stages, defines=all_defines, blocks=block_texts(all_blocks))
+        _set_culling(ctx, material.double_sided)
+        named = {name: texture for name, (texture, _) in material.textures.items()}
+        all_values = {
+            "clip_from_local": _column_major(view.clip_from_local), "lod_bias": lod_bias, **(values or {}),
+        }  # fmt: skip
+        all_values["eye"] = tuple(view.eye)
+        bind(gpu, program, {**named, **(textures or {})}, all_blocks, all_values)
+        samplers = list(enumerate(sampler for _, sampler in material.textures.values()))
+        for unit, sampler in samplers:
+            sampler.use(unit)
+        scene.array(program.gl).render(moderngl.TRIANGLES, vertices=draw.count, first=draw.first)
+        for unit, sampler in samplers:
+            sampler.clear(unit)
+        gpu.profile.count("draws")
+        gpu.profile.count("triangles", draw.count // 3)
+    gpu.profile.count("geometry passes")
+
+
+def _set_culling(ctx: moderngl.Context, double_sided: bool) -> None:
+    if double_sided:
+        ctx.disable(moderngl.CULL_FACE)
+    else:
+        ctx.enable(moderngl.CULL_FACE)
+        ctx.cull_face = "back"
+
+
+def _column_major(matrix: np.ndarray) -> bytes:
+    return np.ascontiguousarray(matrix.T, dtype=np.float32).tobytes()
+
+
+def _visible(draw: Draw, clip_from_local: np.ndarray) -> bool:
+    """Whether the draw's box can reach the picture: false when all its corners lie beyond one clip plane."""
+    low, high = draw.bounds
+    corners = np.array(
+        [[x, y, z, 1.0] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    )
+    clip = corners @ clip_from_local.T
+    x, y, w = clip[:, 0], clip[:, 1], clip[:, 3]
+    return not any(np.all(beyond) for beyond in (x > w, x < -w, y > w, y < -w, w <= 0.0))

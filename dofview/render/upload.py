@@ -1,0 +1,129 @@
+"""A scene on the GPU: one vertex buffer and one index buffer, baked in world space around the scene's own origin.
+
+Positions are carried to the world in float64 and stored relative to the middle of the bounds, so a scene a million
+metres away keeps its detail in float32. Draws of one material are merged, in pieces small enough to cull.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from dofview.gl.context import Gpu
+from dofview.render.materials import MaterialSet
+from dofview.scene.model import Instance, Primitive, Scene, instance_bounds
+
+VERTEX_FORMAT = "3f 3f 2f 2f 4f"
+VERTEX_NAMES = ("in_position", "in_normal", "in_texcoord0", "in_texcoord1", "in_color")
+_FLOATS = 14
+PIECE_TRIANGLES = 16384
+
+
+@dataclass(frozen=True, eq=False)
+class Draw:
+    """A range of the index buffer with one material; `bounds` (2, 3) float64 in the scene's local space."""
+
+    material: int
+    first: int
+    count: int
+    bounds: np.ndarray
+
+
+class GpuScene:
+    """Buffers, materials and draws of one scene; `origin` (3,) float64 is what local space is relative to."""
+
+    def __init__(self, gpu: Gpu, scene: Scene):
+        self.scene = scene
+        self.origin = scene.bounds.mean(axis=0)
+        self.materials = MaterialSet(gpu, scene.materials)
+        vertices, triangles, self.draws = _bake(scene, self.origin)
+        self._vertices = gpu.ctx.buffer(vertices.tobytes()) if len(vertices) else None
+        self._indices = gpu.ctx.buffer(triangles.tobytes()) if len(triangles) else None
+        self._ctx = gpu.ctx
+        self._arrays: dict[int, moderngl.VertexArray] = {}
+
+    @property
+    def local_bounds(self) -> np.ndarray:
+        """(2, 3) float64 corners relative to `origin`."""
+        return self.scene.bounds - self.origin
+
+    def array(self, program: moderngl.Program) -> moderngl.VertexArray:
+        """Return the scene's vertex array for `program`, which may use any subset of the attributes."""
+        if program.glo not in self._arrays:
+            names = [name if name in program else None for name in VERTEX_NAMES]
+            widths = VERTEX_FORMAT.split()
+            layout = " ".join(w if n else f"{int(w[0]) * 4}x" for w, n in zip(widths, names, strict=True))
+            content = [(self._vertices, layout, *[n for n in names if n])]
+            self._arrays[program.glo] = self._ctx.vertex_array(program, content, self._indices, index_element_size=4)
+        return self._arrays[program.glo]
+
+    def release(self) -> None:
+        for array in self._arrays.values():
+            array.release()
+        self._arrays.clear()
+        for buffer in (self._vertices, self._indices):
+            if buffer is not None:
+                buffer.release()
+        self.materials.release()
+
+
+def _bake(scene: Scene, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[Draw, ...]]:
+    vertices: list[np.ndarray] = []
+    triangles: list[np.ndarray] = []
+    draws: list[Draw] = []
+    base = first = 0
+    drawn = [i for i in scene.instances if len(scene.primitives[i.primitive].triangles)]
+    drawn.sort(key=lambda i: scene.primitives[i.primitive].material)
+    for instance in drawn:
+        primitive = scene.primitives[instance.primitive]
+        vertices.append(_bake_vertices(primitive, instance, origin))
+        triangles.append(_bake_triangles(primitive, instance) + np.uint32(base))
+        bounds = instance_bounds(primitive, instance.matrix)
+        assert bounds is not None
+        _append_draw(draws, Draw(primitive.material, first, triangles[-1].size, bounds - origin))
+        base += len(primitive.positions)
+        first += triangles[-1].size
+    empty = np.zeros((0, _FLOATS), np.float32), np.zeros((0, 3), np.uint32)
+    if not draws:
+        return *empty, ()
+    return np.concatenate(vertices), np.concatenate(triangles), tuple(draws)
+
+
+def _append_draw(draws: list[Draw], draw: Draw) -> None:
+    """Add `draw`, merged into the last one while they share a material and the piece stays small."""
+    last = draws[-1] if draws else None
+    if last is not None and last.material == draw.material and last.count + draw.count <= 3 * PIECE_TRIANGLES:
+        lowest = np.minimum(last.bounds[0], draw.bounds[0])
+        highest = np.maximum(last.bounds[1], draw.bounds[1])
+        draws[-1] = Draw(last.material, last.first, last.count + draw.count, np.array([lowest, highest]))
+    else:
+        draws.append(draw)
+
+
+def _bake_vertices(primitive: Primitive, instance: Instance, origin: np.ndarray) -> np.ndarray:
+    linear, offset = instance.matrix[:3, :3], instance.matrix[:3, 3] - origin
+    count = len(primitive.positions)
+    baked = np.zeros((count, _FLOATS), np.float32)
+    baked[:, 0:3] = primitive.positions.astype(np.float64) @ linear.T + offset
+    # The cofactor matrix carries normals like the inverse transpose, and also exists where a scale is zero.
+    cofactor = np.stack(
+        [np.cross(linear[1], linear[2]), np.cross(linear[2], linear[0]), np.cross(linear[0], linear[1])]
+    )
+    cofactor *= np.sign(np.linalg.det(linear)) or 1.0
+    cofactor /= np.abs(cofactor).max() or 1.0
+    normals = primitive.normals.astype(np.float64) @ cofactor.T
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    baked[:, 3:6] = np.where(length > 0.0, normals / np.where(length > 0.0, length, 1.0), (0.0, 0.0, 1.0))
+    for column, texcoords in ((6, primitive.texcoords[0]), (8, primitive.texcoords[1])):
+        if texcoords is not None:
+            baked[:, column : column + 2] = texcoords
+    baked[:, 10:14] = 1.0 if primitive.colors is None else primitive.colors
+    return baked
+
+
+def _bake_triangles(primitive: Primitive, instance: Instance) -> np.ndarray:
+    triangles = primitive.triangles.astype(np.uint32)
+    mirrored = np.linalg.det(instance.matrix[:3, :3]) < 0.0
+    return np.ascontiguousarray(triangles[:, ::-1]) if mirrored else triangles

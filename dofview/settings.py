@@ -1,0 +1,130 @@
+"""Everything a picture depends on, as one frozen value: camera, lens, method, its parameters, size.
+
+"Changed" is `!=`; that is all the progressive reference and the frame cache need. A view file is a part of this in JSON.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
+
+from dofview.errors import SettingsError
+from dofview.lens import Lens
+from dofview.methods import METHODS, method
+from dofview.methods.method import Params
+from dofview.scene.camera import Camera
+
+LARGEST_SIDE = 16384
+M = TypeVar("M", bound=BaseModel)
+Side = Annotated[int, Field(ge=1, le=LARGEST_SIDE)]
+Linear = Annotated[float, Field(ge=0.0, le=1e4, allow_inf_nan=False)]
+
+MethodParams = create_model(
+    "MethodParams", __config__=ConfigDict(frozen=True, extra="forbid"), __doc__="The parameters of every method, by name.",
+    **{name: (method(name).Params, method(name).Params()) for name in METHODS},
+)  # type: ignore[call-overload]  # fmt: skip
+
+
+class ImageSettings(BaseModel):
+    """The picture's size and how it is sampled."""
+
+    model_config = ConfigDict(frozen=True)
+
+    size: tuple[Side, Side] = Field(default=(1024, 768), description="Width and height, pixels.")
+    scale: float = Field(
+        default=1.0, ge=0.5, le=2.0, description="Rendered at this multiple of the size, then averaged in linear light."
+    )
+    guard_px: int | None = Field(
+        default=None, ge=0, le=512, description="Band around the picture that may blur in; as needed when not given."
+    )
+
+
+class Settings(BaseModel):
+    """One picture."""
+
+    model_config = ConfigDict(frozen=True)
+
+    camera: Camera = Camera()
+    lens: Lens = Lens()
+    method: str = "accumulation"
+    params: MethodParams = MethodParams()  # type: ignore[valid-type]
+    image: ImageSettings = ImageSettings()
+    background_linear: tuple[Linear, Linear, Linear] = Field(
+        default=(0.05, 0.055, 0.065), description="Colour where nothing is, linear RGB."
+    )
+
+    @property
+    def method_params(self) -> Params:
+        """The parameters of the chosen method."""
+        return getattr(self.params, self.method)
+
+    def with_(self, **changes: object) -> Settings:
+        """A copy with `changes` checked and applied; nested models are replaced whole."""
+        return checked(Settings, {**{name: getattr(self, name) for name in type(self).model_fields}, **changes})
+
+    def with_params(self, **changes: object) -> Settings:
+        """A copy with parameters of the chosen method changed."""
+        params = checked(type(self.method_params), {**self.method_params.model_dump(), **changes}, self.method)
+        return self.with_(params=self.params.model_copy(update={self.method: params}))
+
+
+def checked(model: type[M], values: dict, where: str = "") -> M:
+    """Build `model` from `values`, or say in one line which key, which value and what would be accepted."""
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        raise SettingsError(one_line(error, where)) from error
+
+
+def one_line(error: ValidationError, where: str = "") -> str:
+    """The first complaint of a validation error: where, key, value, what is accepted."""
+    first = error.errors()[0]
+    key = ".".join(str(part) for part in first["loc"])
+    value = repr(first.get("input"))
+    shown = value if len(value) <= 60 else value[:57] + "..."
+    message = first["msg"].removeprefix("Value error, ")
+    prefix = f"{where}: " if where else ""
+    if first["type"] == "extra_forbidden":
+        return f"{prefix}unknown parameter {key}"
+    return f"{prefix}{key} is {shown}; {message[0].lower()}{message[1:]}" if key else f"{prefix}{message}"
+
+
+def read_view(path: Path, base: Settings) -> Settings:
+    """Return `base` with what the JSON view file `path` says of camera, lens, image size and background.
+
+    Unknown keys are ignored; a wrong value is a SettingsError naming file and key.
+    """
+    try:
+        view = json.loads(path.read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot read view file: {error.strerror or error}") from error
+    except (ValueError, RecursionError) as error:
+        raise SettingsError(f"{path}: not a JSON view file: {error}") from error
+    if not isinstance(view, dict):
+        raise SettingsError(f"{path}: a view file holds one JSON object with camera, lens, image, background_linear")
+    changes: dict[str, object] = {}
+    for key, model in (("camera", Camera), ("lens", Lens), ("image", ImageSettings)):
+        if view.get(key) is not None:
+            if not isinstance(view[key], dict):
+                raise SettingsError(f"{path}: {key} is {view[key]!r}; accepted: an object")
+            given = {k: v for k, v in view[key].items() if k in model.model_fields}
+            if key == "image":
+                given = {k: v for k, v in given.items() if k == "size"}
+            if key == "lens" and isinstance(given.get("image"), str):
+                given["image"] = _beside(path, given["image"])
+            changes[key] = checked(model, {**getattr(base, key).model_dump(), **given}, f"{path}: {key}")
+    if view.get("background_linear") is not None:
+        changes["background_linear"] = view["background_linear"]
+    try:
+        return base.with_(**changes)
+    except SettingsError as error:
+        raise SettingsError(f"{path}: {error}") from error
+
+
+def _beside(view_file: Path, name: str) -> str:
+    """A picture named in a view file is looked for beside it first."""
+    candidate = view_file.parent / name
+    return str(candidate) if candidate.is_file() else name

@@ -1,0 +1,27 @@
+"""One OpenGL context for the whole run; every test that uses it must leave no GL error behind."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import pytest
+
+os.environ.setdefault("LP_NUM_THREADS", "2")
+
+from dofview.gl.context import Gpu, create_headless  # noqa: E402
+
+
+@pytest.fixture(scope="session")
+def session_gpu() -> Iterator[Gpu]:
+    gpu = create_headless()
+    yield gpu
+    gpu.release()
+
+
+@pytest.fixture
+def gpu(session_gpu: Gpu) -> Iterator[Gpu]:
+    """The session's context, with a clean error state before and after."""
+    assert session_gpu.ctx.error == "GL_NO_ERROR"
+    yield session_gpu
+    assert session_gpu.ctx.error == "GL_NO_ERROR"
