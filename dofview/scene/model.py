@@ -7,6 +7,7 @@ readers refuse or repair, so nothing downstream has to check again.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -39,7 +40,10 @@ class Sampler:
 
 @dataclass(frozen=True, eq=False)
 class Texture:
-    """A picture with its sampler, the texture-coordinate set (0 or 1) and a 2×3 uv transform (KHR_texture_transform)."""
+    """A picture with its sampler, texture-coordinate set (0 or 1) and (2, 3) uv transform (KHR_texture_transform).
+
+    A primitive that lacks the set is looked up at (0, 0).
+    """
 
     picture: Picture
     sampler: Sampler = Sampler()
@@ -85,10 +89,18 @@ class Primitive:
     material: int = 0
     name: str = ""
 
+    @cached_property
+    def box(self) -> np.ndarray:
+        """(2, 3) float64 lowest and highest corner of all positions (there must be one), worked out once."""
+        return np.array([self.positions.min(axis=0), self.positions.max(axis=0)], dtype=np.float64)
+
 
 @dataclass(frozen=True, eq=False)
 class Instance:
-    """A primitive placed in the world; `matrix` is (4, 4) float64, column vectors."""
+    """A primitive placed in the world; `matrix` is (4, 4) float64, column vectors.
+
+    It is finite; it may mirror (negative determinant: front faces then wind clockwise) or flatten (singular).
+    """
 
     primitive: int
     matrix: np.ndarray
@@ -116,6 +128,7 @@ class Scene:
     cameras: tuple[SceneCamera, ...] = ()
     warnings: tuple[str, ...] = ()
     source: str = ""
+    mesh_triangles: int | None = None  # in all meshes of the file, each counted once; None: not from a file with meshes
     _bounds: list[np.ndarray] = field(default_factory=list, repr=False)
 
     @property
@@ -139,7 +152,7 @@ def instance_bounds(primitive: Primitive, matrix: np.ndarray) -> np.ndarray | No
     """(2, 3) float64 corners of the primitive's box carried through `matrix`; None when it has no triangles."""
     if len(primitive.positions) == 0 or len(primitive.triangles) == 0:
         return None
-    box = np.array([primitive.positions.min(axis=0), primitive.positions.max(axis=0)], dtype=np.float64)
+    box = primitive.box
     center, half = box.mean(axis=0), (box[1] - box[0]) / 2
     world_center = matrix[:3, :3] @ center + matrix[:3, 3]
     world_half = np.abs(matrix[:3, :3]) @ half
