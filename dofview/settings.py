@@ -1,6 +1,7 @@
 """Everything a picture depends on, as one frozen value: camera, lens, method, its parameters, size.
 
-"Changed" is `!=`; that is all the progressive reference and the frame cache need. A view file is a part of this in JSON.
+"Changed" is `!=`; that is all the progressive reference and the frame cache need. A view file is a part of this in
+JSON.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ Side = Annotated[int, Field(ge=1, le=LARGEST_SIDE)]
 Linear = Annotated[float, Field(ge=0.0, le=1e4, allow_inf_nan=False)]
 
 MethodParams = create_model(
-    "MethodParams", __config__=ConfigDict(frozen=True, extra="forbid"), __doc__="The parameters of every method, by name.",
+    "MethodParams", __config__=ConfigDict(frozen=True, extra="forbid"),
+    __doc__="The parameters of every method, by name.",
     **{name: (method(name).Params, method(name).Params()) for name in METHODS},
 )  # type: ignore[call-overload]  # fmt: skip
 

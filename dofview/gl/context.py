@@ -42,7 +42,7 @@ class Gpu:
         self._blocks: dict[bytes, moderngl.Buffer] = {}
 
     def block(self, data: bytes) -> moderngl.Buffer:
-        """Return a uniform buffer holding `data`. Buffers are never rewritten, so no draw in flight can be disturbed."""
+        """Return a uniform buffer holding `data`. None is ever rewritten, so no draw in flight is disturbed."""
         buffer = self._blocks.pop(data, None) or self.ctx.buffer(data)
         self._blocks[data] = buffer
         if len(self._blocks) > MOST_BLOCKS:

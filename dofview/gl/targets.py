@@ -70,6 +70,7 @@ class TargetPool:
         self._used: dict[str, int] = {}
         self._depth_used: dict[tuple[int, int], int] = {}
         self._clock = 0
+        self._resting = ctx.framebuffer([ctx.renderbuffer((1, 1))])
 
     def image(
         self, name: str, size: tuple[int, int], components: int = 4, dtype: str = "f4", layers: int = 0,
@@ -105,13 +106,15 @@ class TargetPool:
         for name in [n for n, used in self._used.items() if used < self._clock - keep_frames]:
             self._release(name)
         for size in [s for s, used in self._depth_used.items() if used < self._clock - keep_frames]:
-            self._drop_framebuffers(lambda fbo, size=size: fbo.size == size)
+            self._drop_framebuffers([key for key, fbo in self._framebuffers.items() if key[1] and fbo.size == size])
             self._depths.pop(size).release()
             del self._depth_used[size]
 
     def release(self) -> None:
         """Release everything."""
         self.collect(keep_frames=-1)
+        self._resting.color_attachments[0].release()
+        self._resting.release()
 
     def _depth(self, size: tuple[int, int]) -> moderngl.Renderbuffer:
         if size not in self._depths:
@@ -122,10 +125,13 @@ class TargetPool:
         image = self._images.pop(name)
         self._used.pop(name, None)
         glo = image.texture.glo
-        for key in [k for k in self._framebuffers if glo in k[0]]:
-            self._framebuffers.pop(key).release()
+        self._drop_framebuffers([key for key in self._framebuffers if glo in key[0]])
         image.release()
 
-    def _drop_framebuffers(self, doomed) -> None:
-        for key in [k for k, fbo in self._framebuffers.items() if k[1] and doomed(fbo)]:
-            self._framebuffers.pop(key).release()
+    def _drop_framebuffers(self, keys: list[tuple]) -> None:
+        for key in keys:
+            framebuffer = self._framebuffers.pop(key)
+            if self._ctx.fbo is framebuffer:
+                # moderngl binds the last framebuffer again after making another, also when it is gone by then.
+                self._resting.use()
+            framebuffer.release()

@@ -71,7 +71,8 @@ def depth_range(scene: GpuScene, camera: Camera) -> tuple[float, float]:
 
 def projection(
     scene: GpuScene, camera: Camera, size: tuple[int, int], guard: int = 0, *, lens_point: tuple[float, float] = (0, 0),
-    focus_distance: float = np.inf, jitter_px: tuple[float, float] = (0, 0), near_far: tuple[float, float] | None = None,
+    focus_distance: float = np.inf, jitter_px: tuple[float, float] = (0, 0),
+    near_far: tuple[float, float] | None = None,
 ) -> Projection:  # fmt: skip
     """Off-axis projection from a point of the lens (Haeberli and Akeley 1990): the plane in focus stays in place.
 

@@ -1,8 +1,8 @@
 """The truth: views through many points of the lens, averaged (the accumulation buffer, Haeberli and Akeley 1990).
 
-Each view is an off-axis frustum that keeps the plane in focus still; views are added in RGBA32F, where 4096 of them lose
-less than 1e-4 (fp16 stalls near 64). Its own estimate of how good it is needs no ground truth: how much the mean changed
-since half as many views, which is 0.3–6 dB pessimistic for low-discrepancy points.
+Each view is an off-axis frustum that keeps the plane in focus still; views are added in RGBA32F, where 4096 of them
+lose less than 1e-4 (fp16 stalls near 64). Its own estimate of how good it is needs no ground truth: how much the mean
+changed since half as many views, which is 0.3–6 dB pessimistic for low-discrepancy points.
 """
 
 from __future__ import annotations
