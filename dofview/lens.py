@@ -56,7 +56,9 @@ class Lens(BaseModel):
     rotation_deg: float = Field(
         default=0.0, allow_inf_nan=False, description="Polygon or image turned counter-clockwise, degrees."
     )
-    image: Path | None = Field(default=None, description="Picture of the aperture, brightness is transmission.")
+    image: Path | str | None = Field(
+        default=None, description="Picture of the aperture, brightness is transmission: a file, or a built-in shape."
+    )
 
     @field_validator("focus_distance")
     @classmethod
