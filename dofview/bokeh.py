@@ -17,6 +17,7 @@ import numpy as np
 
 from dofview.errors import InputError, ModelError
 from dofview.lens import Distribution, Lens
+from dofview.scene.limits import Account, Limits
 from dofview.scene.pictures import open_picture
 
 LARGEST = 1024
@@ -52,7 +53,7 @@ class Aperture:
 
 
 def of_lens(lens: Lens, size: int = 256) -> Aperture:
-    """Draw the distribution of any lens, turned as it is, `size` texels square (a picture that is not turned: as it is)."""
+    """Draw the distribution of any lens, turned as it is, `size` texels square; a picture not turned keeps its own."""
     match lens.distribution:
         case Distribution.UNIFORM_DISC:
             return built_in("disc", size)
@@ -107,20 +108,25 @@ def normalised(name: str, transmission: np.ndarray, extent: float = 1.0) -> Aper
     weights[top : top + height, left : left + width] = transmission
     total = weights.sum()
     if not total > 0.0 or not math.isfinite(total):
-        raise InputError(f"aperture picture {name!r} lets no light through; accepted: one that is not all black or clear")
+        raise InputError(
+            f"aperture picture {name!r} lets no light through; accepted: one that is not all black or clear"
+        )
     return Aperture(name, weights / total, extent)
 
 
 @functools.lru_cache(maxsize=4)
 def _read(path: Path, size: int, modified_ns: int) -> Aperture:
-    # Size and time of the file are only here so that a changed file is read again.
-    del size, modified_ns
+    del modified_ns  # only part of the key, so that a changed file is read again
     try:
-        image = open_picture(path.read_bytes(), path.suffix)
+        account = Account(Limits())
+        account.charge_bytes(size)
+        image = open_picture(path.read_bytes(), account, path.suffix)
     except ModelError as error:
         raise InputError(f"aperture picture {str(path)!r} {error}") from error
     except OSError as error:
-        raise InputError(f"aperture picture {str(path)!r} cannot be read: {(error.strerror or 'error').lower()}") from error
+        raise InputError(
+            f"aperture picture {str(path)!r} cannot be read: {(error.strerror or 'error').lower()}"
+        ) from error
     return normalised(str(path), _transmission(image))
 
 

@@ -58,7 +58,9 @@ def flip(image: np.ndarray, reference: np.ndarray, mask: np.ndarray | None = Non
     try:
         import flip_evaluator
     except ImportError as error:
-        raise InputError("FLIP needs the package flip-evaluator; install it with: pip install 'dofview[flip]'") from error
+        raise InputError(
+            "FLIP needs the package flip-evaluator; install it with: pip install 'dofview[flip]'"
+        ) from error
     image, reference = (np.ascontiguousarray(p, dtype=np.float32) for p in _encoded(image, reference))
     values, mean, _ = flip_evaluator.evaluate(reference, image, "LDR", applyMagma=False)
     return float(mean) if mask is None else _mean(values[..., 0][mask])

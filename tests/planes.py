@@ -40,10 +40,10 @@ class Planes(NamedTuple):
 
 
 def planes_scene() -> Planes:
-    """A plane in focus between one in front and one behind, seen off axis and rolled; CoC −5.9, 0 and 4.7 px at 64 px."""
+    """A plane in focus between one in front and one behind, seen off axis and rolled; CoC −5.9, 0, 4.7 px at 64 px."""
     return build(
         [
-            facing(ROLLED, 5.0, (-2.6, 1.9), (5.2, 3.8), pattern(1, 48)),
+            facing(ROLLED, 5.0, (-3.6, 2.6), (7.2, 5.2), pattern(1, 48)),
             facing(ROLLED, FOCUS, (-0.9, 0.75), (1.35, 1.2), pattern(2, 40)),
             facing(ROLLED, 2.0, (-0.1, 0.35), (0.75, 0.95), pattern(3, 32), tilt=0.25),
         ],
@@ -55,7 +55,9 @@ def planes_scene() -> Planes:
 def build(planes: list[Plane], camera: Camera, lens: Lens) -> Planes:
     """Tell `planes` both ways."""
     materials = tuple(
-        Material(unlit=True, double_sided=True, base_color_texture=Texture(Picture(f"p{k}", opaque(p.texels)), SHARP_SAMPLER))
+        Material(
+            unlit=True, double_sided=True, base_color_texture=Texture(Picture(f"p{k}", opaque(p.texels)), SHARP_SAMPLER)
+        )
         for k, p in enumerate(planes)
     )
     primitives = tuple(primitive(p, k) for k, p in enumerate(planes))
@@ -98,7 +100,9 @@ def pattern(seed: int, size: int) -> np.ndarray:
     rng = np.random.default_rng(seed)
     frequency = np.fft.fftfreq(size)
     low_pass = np.exp(-(np.add.outer(frequency**2, frequency**2)) / (2 * 0.06**2))
-    noise = np.stack([np.fft.ifft2(np.fft.fft2(rng.standard_normal((size, size))) * low_pass).real for _ in range(3)], -1)
+    noise = np.stack(
+        [np.fft.ifft2(np.fft.fft2(rng.standard_normal((size, size))) * low_pass).real for _ in range(3)], -1
+    )
     letter = np.zeros((size, size))
     s = size // 8
     letter[s : 7 * s, 2 * s : 3 * s] = letter[s : 2 * s, 2 * s : 6 * s] = letter[3 * s : 4 * s, 2 * s : 5 * s] = 1.0
@@ -130,5 +134,12 @@ def thin_lens(camera: Camera, lens: Lens) -> ThinLensCamera:
             assert lens.rotation_deg == 0.0
             transmission = picture(bokeh.load(lens.image).weights)
     return ThinLensCamera(
-        camera.position, camera.target, camera.up, camera.vfov_deg, lens.radius, lens.focus_distance, transmission, extent
+        camera.position,
+        camera.target,
+        camera.up,
+        camera.vfov_deg,
+        lens.radius,
+        lens.focus_distance,
+        transmission,
+        extent,
     )

@@ -1,9 +1,9 @@
 """Ground truth: a thin-lens ray caster over textured rectangles, in float64 and from first principles.
 
-It shares no line with dofview on purpose. A ray starts at a point of the lens and goes through the point where the chief
-ray of its place in the pixel meets the plane of focus; the nearest rectangle it hits gives the colour. Pixels and lens
-are integrated by brute force: a jittered grid over the pixel, and over the square around the lens one weighted with the
-transmission there.
+It shares no line with dofview on purpose. A ray starts at a point of the lens and goes through the point where the
+chief ray of its place in the pixel meets the plane of focus; the nearest rectangle it hits gives the colour. Pixels
+and lens are integrated by brute force: a jittered grid over the pixel, and over the square around the lens one that is
+weighted with the transmission there.
 """
 
 from __future__ import annotations
@@ -58,7 +58,9 @@ def polygon(blades: int, first_corner_deg: float) -> Transmission:
         for k in range(blades):
             a = math.radians(first_corner_deg + 360.0 * k / blades)
             b = math.radians(first_corner_deg + 360.0 * (k + 1) / blades)
-            left_of_edge = (math.cos(b) - math.cos(a)) * (y - math.sin(a)) - (math.sin(b) - math.sin(a)) * (x - math.cos(a))
+            left_of_edge = (math.cos(b) - math.cos(a)) * (y - math.sin(a)) - (math.sin(b) - math.sin(a)) * (
+                x - math.cos(a)
+            )
             result *= left_of_edge > 0.0
         return result
 
@@ -78,7 +80,7 @@ def picture(values: np.ndarray) -> Transmission:
 
 
 def bilinear(texels: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
-    """Look up `texels` (h, w, 3) as OpenGL does with LINEAR and REPEAT: centres at (i + ½)/n, v downwards from row 0."""
+    """Look up `texels` (h, w, 3) as OpenGL does with LINEAR, REPEAT: centres at (i + ½)/n, v downwards from row 0."""
     height, width = texels.shape[:2]
 
     def color(u: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -96,7 +98,8 @@ def bilinear(texels: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarra
 
 def cast(
     camera: ThinLensCamera, rectangles: list[Rectangle], width: int, height: int, *,
-    lens_grid: int = 32, antialias: bool = True, background: tuple[float, float, float] = (0.0, 0.0, 0.0), seed: int = 1,
+    lens_grid: int = 32, antialias: bool = True, background: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    seed: int = 1,
 ) -> np.ndarray:  # fmt: skip
     """Render (height, width, 3) float64 with `lens_grid`² rays per pixel, row 0 on top."""
     rng = np.random.default_rng(seed)

@@ -7,6 +7,7 @@ a way to burn time.
 
 from __future__ import annotations
 
+import contextlib
 import io
 import struct
 from collections.abc import Iterator
@@ -29,21 +30,33 @@ def decode(data: bytes | memoryview, name: str, account: Account, suffix: str = 
 
     `suffix` (".tga") is needed for TGA alone, which has no signature.
     """
+    image = open_picture(data, account, suffix)
+    with _one_error_class():
+        return Picture(name, _rgba(image))
+
+
+def open_picture(data: bytes | memoryview, account: Account, suffix: str = ""):
+    """Decode to a Pillow image in the mode it is stored in; ModelError says why not."""
     data = bytes(data)
-    try:
+    with _one_error_class():
         image = _open(data, suffix)
         width, height = image.size
         account.charge_picture(width, height)
         _check_scans(data, width * height)
         image.load()
-        pixels = _rgba(image)
+        return image
+
+
+@contextlib.contextmanager
+def _one_error_class() -> Iterator[None]:
+    try:
+        yield
     except ModelError:
         raise
     except MemoryError as error:
         raise ModelError("needs more memory than there is") from error
     except Exception as error:  # Pillow's parsers raise whatever broken bytes lead them to
         raise ModelError(f"is not a readable picture ({type(error).__name__})") from error
-    return Picture(name, pixels)
 
 
 def _open(data: bytes, suffix: str):
