@@ -38,6 +38,8 @@ class Gpu:
         self.shaders = ShaderLibrary(ctx)
         self.targets = TargetPool(ctx)
         self.profile = Profile(ctx, self.software)
+        self.samples_passed = ctx.query(samples=True)
+        """The one occlusion query: moderngl cannot release queries, so they are made once and used again."""
         self.facts: dict[str, object] = {}
         self._blocks: dict[bytes, moderngl.Buffer] = {}
 

@@ -26,6 +26,7 @@ class Profile:
         self.counts: Counter[str] = Counter()
         self.milliseconds: dict[str, float] = {}
         self._pending: list[tuple[str, moderngl.Query]] = []
+        self._idle: list[moderngl.Query] = []
         self._open = False
 
     def begin(self) -> None:
@@ -52,7 +53,7 @@ class Profile:
                 self._ctx.finish()
                 self._add(name, (time.perf_counter() - start) * 1e3)
             else:
-                query = self._ctx.query(time=True)
+                query = self._idle.pop() if self._idle else self._ctx.query(time=True)
                 with query:
                     yield
                 self._pending.append((name, query))
@@ -63,6 +64,7 @@ class Profile:
         """Wait for pending queries and return milliseconds by section, in order of first use."""
         for name, query in self._pending:
             self._add(name, query.elapsed / 1e6)
+            self._idle.append(query)
         self._pending.clear()
         return dict(self.milliseconds)
 

@@ -7,6 +7,7 @@ background), not on the lens, so moving the focus or switching methods draws no 
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from typing import NamedTuple
 
 from pydantic import BaseModel, ConfigDict
@@ -134,14 +135,14 @@ class Frame:
         ):
             return Surfaces(color, inverse_depth)
         textures = {"peeled_inverse_depth": before.inverse_depth} if before else {}
-        query = self.gpu.ctx.query(samples=True)
-        with self.gpu.profile.section(f"scene/{name}"), query:
+        passed = self.gpu.samples_passed
+        with self.gpu.profile.section(f"scene/{name}"), passed if reject else nullcontext():
             draw_scene(
                 self.gpu, self.scene, self.projection(), (color, inverse_depth), lights=self.lights, reject=reject,
                 background=(0.0, 0.0, 0.0) if reject else self.background, textures=textures,
             )  # fmt: skip
         if reject:
-            self.cache.values[(self.geometry_key, color.name)] = query.samples > 0
+            self.cache.values[(self.geometry_key, color.name)] = passed.samples > 0
         return Surfaces(color, inverse_depth)
 
 

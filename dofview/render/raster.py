@@ -29,7 +29,7 @@ class LightsBlock(BaseModel):
     fill_direction: Vec4
     fill_radiance: Vec4 = (0.55, 0.6, 0.7, 0.0)
     back_direction: Vec4
-    back_radiance: Vec4 = (0.7, 0.7, 0.75, 0.0)
+    back_radiance: Vec4 = (0.4, 0.4, 0.45, 0.0)
     up: Vec4
     zenith: Vec4 = (0.42, 0.46, 0.52, 0.0)
     ground: Vec4 = (0.16, 0.145, 0.13, 0.0)
