@@ -74,7 +74,8 @@ def test_the_lens_is_the_same_in_glsl_and_python(gpu: Gpu, shader_folder):
 
     (shader_folder / "lens.glsl").write_text((SHADERS / "include/lens.glsl").read_text())
     (shader_folder / "ramp.frag").write_text(
-        '#include "lens.glsl"\nuniform float step_;\nout float o;\nvoid main(){o=coc_radius(floor(gl_FragCoord.x)*step_);}'
+        '#include "lens.glsl"\nuniform float step_;\nout float o;\n'
+        "void main(){o=coc_radius(floor(gl_FragCoord.x)*step_);}"
     )
     image = gpu.targets.image("test/ramp", (256, 1), components=1)
     for lens in (Lens(radius=0.3, focus_distance=2.0), Lens(radius=0.1, focus_distance=float("inf")), Lens()):
