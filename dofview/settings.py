@@ -16,6 +16,7 @@ from dofview.errors import SettingsError
 from dofview.lens import Lens
 from dofview.methods import METHODS, method
 from dofview.methods.method import Params
+from dofview.render.display import Display
 from dofview.scene.camera import Camera
 
 LARGEST_SIDE = 16384
@@ -54,6 +55,7 @@ class Settings(BaseModel):
     method: str = "accumulation"
     params: MethodParams = MethodParams()  # type: ignore[valid-type]
     image: ImageSettings = ImageSettings()
+    display: Display = Display()
     background_linear: tuple[Linear, Linear, Linear] = Field(
         default=(0.05, 0.055, 0.065), description="Colour where nothing is, linear RGB."
     )

@@ -174,3 +174,19 @@ def test_one_hundred_resizes_leave_nothing_behind(gpu: Gpu):
     for step in range(100):
         frame((65 + step * 7 % 50, 33 + step))
     assert live_objects(gpu.ctx) == before
+
+
+def test_display_is_srgb_of_linear_light(gpu: Gpu):
+    from dofview.metrics import srgb_encode
+    from dofview.render.display import Display, Tonemap, show
+
+    ramp = np.linspace(0.0, 1.2, 64, dtype=np.float32).reshape(1, 64, 1).repeat(4, 2)
+    image = gpu.targets.image("test/ramp", (64, 1))
+    image.write(ramp)
+    shown = show(gpu, image, Display(), "test/shown").pixels()[0, :, 0]
+    assert np.abs(shown - 255.0 * srgb_encode(ramp[0, :, 0])).max() <= 0.51
+    brighter = show(gpu, image, Display(exposure_ev=1.0), "test/shown").pixels()[0, :, 0]
+    assert np.abs(brighter - 255.0 * srgb_encode(2.0 * ramp[0, :, 0])).max() <= 0.51
+    for tonemap in Tonemap:
+        curve = show(gpu, image, Display(tonemap=tonemap), "test/shown").pixels()[0, :, 0].astype(int)
+        assert (np.diff(curve) >= 0).all() and curve[0] == 0, tonemap

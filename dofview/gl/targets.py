@@ -13,6 +13,10 @@ import moderngl
 import numpy as np
 
 
+# moderngl calls normalised bytes "f1"; numpy knows them as bytes.
+_NUMPY = {"f1": "u1"}
+
+
 @dataclass(frozen=True)
 class Shape:
     """What an image is made of: size in pixels, 1–4 components, moderngl dtype, layers (0: not an array)."""
@@ -47,13 +51,16 @@ class Image:
     def pixels(self) -> np.ndarray:
         """Read back (height, width, components), or (layers, …) for an array, row 0 on top. Nobody else flips."""
         width, height = self.size
-        data = np.frombuffer(self.texture.read(alignment=1), dtype=self.shape.dtype)
+        data = np.frombuffer(self.texture.read(alignment=1), dtype=_NUMPY.get(self.shape.dtype, self.shape.dtype))
         data = data.reshape(max(self.shape.layers, 1), height, width, self.shape.components)[:, ::-1]
         return np.ascontiguousarray(data if self.shape.layers else data[0])
 
     def write(self, pixels: np.ndarray) -> None:
         """Upload (height, width, components), row 0 on top."""
-        self.texture.write(np.ascontiguousarray(pixels[::-1], dtype=self.shape.dtype).tobytes(), alignment=1)
+        self.texture.write(
+            np.ascontiguousarray(pixels[::-1], dtype=_NUMPY.get(self.shape.dtype, self.shape.dtype)).tobytes(),
+            alignment=1,
+        )
 
     def release(self) -> None:
         self.texture.release()
