@@ -55,16 +55,18 @@ def block_texts(blocks: Blocks) -> dict[str, str]:
 def draw(
     gpu: Gpu, shader: str, into: Image | Sequence[Image], *, textures: Textures | None = None,
     blocks: Blocks | None = None, values: Mapping[str, object] | None = None, defines: Defines | None = None,
-    blend: tuple | None = None, clear: bool = False, vertex: str = "pass/fullscreen.vert",
+    blend: tuple | None = None, clear: bool = False, viewport: tuple[int, int, int, int] | None = None,
+    vertex: str = "pass/fullscreen.vert",
 ) -> None:  # fmt: skip
-    """Run the fragment shader `shader` over every pixel of `into` (one image, or several of one size)."""
+    """Run the fragment shader `shader` over every pixel of `into` (one image, or several of one size), or over the
+    part of them that `viewport` (left, bottom, width, height) names; `clear` is of the whole."""
     images = (into,) if isinstance(into, Image) else tuple(into)
     blocks = blocks or {}
     program = gpu.shaders.program(vertex, shader, defines=defines, blocks=block_texts(blocks))
     framebuffer = gpu.targets.framebuffer(images)
     framebuffer.use()
     ctx = gpu.ctx
-    ctx.viewport = (0, 0, *images[0].size)
+    ctx.viewport = viewport or (0, 0, *images[0].size)
     ctx.enable_only(moderngl.BLEND if blend else moderngl.NOTHING)
     if blend:
         ctx.blend_func = blend
@@ -76,4 +78,5 @@ def draw(
         program.arrays[0] = ctx.vertex_array(program.gl, [])
     program.arrays[0].render(moderngl.TRIANGLES, vertices=3)
     gpu.profile.count("passes")
-    gpu.profile.count("fragments", images[0].size[0] * images[0].size[1] * max(images[0].shape.layers, 1))
+    width, height = viewport[2:] if viewport else images[0].size
+    gpu.profile.count("fragments", width * height * max(images[0].shape.layers, 1))

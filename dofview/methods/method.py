@@ -62,12 +62,13 @@ class Recipe:
     def draw(
         self, shader: str, into: Image | Sequence[Image], *, values: Mapping[str, object] | None = None,
         defines: Mapping[str, object] | None = None, blocks: Mapping[str, BaseModel] | None = None,
-        blend: tuple | None = None, clear: bool = False, **textures: Image,
+        blend: tuple | None = None, clear: bool = False, viewport: tuple[int, int, int, int] | None = None,
+        **textures: Image,
     ) -> None:  # fmt: skip
         """Run `shader` of the method's folder (or of shaders/ when it has a folder of its own) into `into`."""
         path = shader if "/" in shader else f"methods/{self.name}/{shader}"
         with self.gpu.profile.section(f"{self.name}/{path.rsplit('/', 1)[-1].removesuffix('.frag')}"):
             draw(
                 self.gpu, path, into, textures=textures, blocks={**self._blocks, **(blocks or {})}, values=values,
-                defines=defines, blend=blend, clear=clear,
+                defines=defines, blend=blend, clear=clear, viewport=viewport,
             )  # fmt: skip
