@@ -7,7 +7,7 @@ from importlib import import_module
 from dofview.errors import SettingsError
 from dofview.methods.method import Method
 
-METHODS = ("pinhole", "accumulation")
+METHODS = ("pinhole", "mipmap", "accumulation")
 
 
 def method(name: str) -> Method:

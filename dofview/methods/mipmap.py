@@ -1,0 +1,131 @@
+"""Depth of field by interpolating anisotropically filtered mipmaps of one pinhole picture.
+
+Sungkil Lee, Gerard Jounghyun Kim, Seungmoon Choi: Real-Time Depth-of-Field Rendering Using Anisotropically Filtered
+Mipmap Interpolation. IEEE TVCG 15(3), 2009. Fast and independent of the size of the blur: a preview, with one surface
+per pixel and a Gaussian lens.
+"""
+
+from __future__ import annotations
+
+import math
+from enum import StrEnum
+
+from pydantic import Field
+
+from dofview.gl.pyramids import Atlas, most_levels
+from dofview.gl.targets import Image
+from dofview.lens import Distribution
+from dofview.methods.method import Params as BaseParams
+from dofview.methods.method import Recipe
+from dofview.render.frame import Frame
+
+TITLE = "Mipmap interpolation"
+CITATION = (
+    "S. Lee, G. J. Kim, S. Choi. Real-Time Depth-of-Field Rendering Using Anisotropically Filtered Mipmap "
+    "Interpolation. IEEE Transactions on Visualization and Computer Graphics 15(3), 2009."
+)
+REQUIRES_GL = 330
+GUARD_BAND = True
+
+
+class Constants(StrEnum):
+    """Which constants and filters."""
+
+    MATCHED = "matched"
+    PAPER = "paper"
+
+
+class Params(BaseParams):
+    """What the paper leaves to choose, and its own choices."""
+
+    constants: Constants = Field(
+        default=Constants.MATCHED,
+        description="Filters and blur calibrated by their measured response, or as printed in the paper.",
+    )
+    delta: float = Field(
+        default=0.5, ge=0.0, le=8.0,
+        description="How much sharper, in px of σ, a neighbour of a blurred background pixel may be and still mix in.",
+        json_schema_extra={"unit": "px", "symbol": "δ"},
+    )  # fmt: skip
+    anisotropic: bool = Field(default=True, description="Keep what is sharp from leaking into the blurred background.")
+    smooth_foreground: bool = Field(
+        default=True, description="Let blur in front of the focus fade out across silhouettes."
+    )
+    skip: bool = Field(default=True, description="Leave out work that cannot change the picture.")
+
+
+def render(frame: Frame, params: Params) -> Image:
+    """Return the picture with depth of field. Steps are numbered as in the paper's figure 10."""
+    recipe = Recipe(frame, "mipmap", params)
+    paper = params.constants == Constants.PAPER
+    sigma = _sigma(frame, paper)
+    blocks = {"Lens": frame.lens_block.model_copy(update={"sigma": sigma})}
+    nearest, farthest = frame.coc_range()
+    greatest = sigma * max(abs(nearest), abs(farthest))
+    top = _level(greatest)
+    levels = most_levels(frame.size) if not params.skip else min(math.ceil(top), most_levels(frame.size))
+    atlas = Atlas(frame.size, max(levels, 1))
+    defines = {"LAST_LEVEL": atlas.levels}
+    if paper:
+        defines["PAPER"] = 1
+    if params.anisotropic:
+        defines["ANISOTROPIC"] = 1
+
+    # 1. The pinhole picture and its degree of blurring (DoB).
+    surfaces = frame.pinhole()
+    images = [_pair(recipe, atlas, parity) for parity in (0, 1)]
+    recipe.draw(
+        "prepare.frag", images[0], blocks=blocks, viewport=atlas.viewport(0),
+        pinhole=surfaces.color, inverse_depth=surfaces.inverse_depth,
+    )  # fmt: skip
+
+    # 2–3. Both pyramids, a level a pass: what is in focus is kept out of the background from here on.
+    for level in range(1, atlas.levels + 1):
+        colors, zbns = images[(level - 1) % 2]
+        _, _, *source_size = atlas.viewport(level - 1)
+        recipe.draw(
+            "reduce.frag", images[level % 2], blocks=blocks, defines=defines, viewport=atlas.viewport(level),
+            values={
+                "corner": atlas.corner(level), "source_corner": atlas.corner(level - 1),
+                "source_size": tuple(source_size),
+            },
+            colors=colors, zbns=zbns,
+        )  # fmt: skip
+
+    # 4. Without it the blurred foreground would stop at its silhouette as if cut out.
+    blur: dict[str, Image] = {"inverse_depth": surfaces.inverse_depth}
+    if params.smooth_foreground and (nearest < 0.0 or not params.skip):
+        smoothed = recipe.image("smoothed DoB")
+        recipe.draw(
+            "smooth.frag", smoothed, values={**atlas.values(), "top": top}, defines=defines,
+            even_levels=images[0][1], odd_levels=images[1][1],
+        )  # fmt: skip
+        blur, defines = {"smoothed": smoothed}, {**defines, "SMOOTHED": 1}
+    else:
+        frame.gpu.profile.count("mipmap smoothings skipped")
+
+    # 5. Between the two levels that give each pixel its blur.
+    result = recipe.image("result")
+    recipe.draw(
+        "blend.frag", result, blocks=blocks, values=atlas.values(), defines=defines, even_levels=images[0][0],
+        odd_levels=images[1][0], **blur,
+    )  # fmt: skip
+    return result
+
+
+def _pair(recipe: Recipe, atlas: Atlas, parity: int) -> tuple[Image, Image]:
+    """The colour and the ZBN image of the even or the odd levels."""
+    size, name = atlas.image_size(parity), ("even", "odd")[parity]
+    return tuple(recipe.image(f"{kind} {name} levels", size, linear=True) for kind in ("colour", "ZBN"))
+
+
+def _sigma(frame: Frame, paper: bool) -> float:
+    """σ over the CoC radius. The paper's lens has σ = C/2, the radius itself, unless a Gaussian lens says its own."""
+    if paper and frame.lens.distribution != Distribution.GAUSSIAN:
+        return 1.0
+    return frame.lens.matched_sigma_fraction
+
+
+def _level(sigma: float) -> float:
+    """The level that has a blur of `sigma`, px, so that no level beyond the next whole one is ever read (eq 6)."""
+    return max(1.0 + math.log2(max(2.0 / 3.0 * sigma, 0.5)), 0.0)

@@ -1,0 +1,76 @@
+// Non-linear mipmap interpolation with circular taps (eq 8): the picture at the blur that each pixel asks for.
+//
+// The mix of two levels is linear; the paper's geometric mix is 0 where either is.
+#include "include/lens.glsl"
+#include "methods/mipmap/keep.glsl"
+#include "methods/mipmap/ring.glsl"
+
+#ifdef SMOOTHED
+uniform sampler2D smoothed;
+#else
+uniform sampler2D inverse_depth;
+#endif
+
+out vec4 color;
+
+// Distance of the taps in units of sigma: one texel of level l - 1 where the blur is that of level l exactly.
+const float REACH = 1.1;
+
+// Variance per axis, px^2, that reducing to `level` and magnifying it bilinearly gives, mean over positions: each
+// [1 3 3 1] / 8 adds 3/4 texel^2, interpolation 1/6 texel^2 of the level.
+float level_variance(int level)
+{
+    return level == 0 ? 0.0 : exp2(2.0 * float(level)) * (5.0 / 12.0) - 0.25;
+}
+
+// Variance that the ring at distance d gives on level 0, where a tap between pixels is spread over them.
+float ring_variance(float d)
+{
+    vec2 t = fract(d * vec2(1.0, DIAGONAL));
+    vec2 spread = t * (1.0 - t);
+    return TAP * (2.0 * (d * d + spread.x) + 4.0 * (0.5 * d * d + spread.y));
+}
+
+void main()
+{
+    vec2 position = gl_FragCoord.xy;
+#ifdef SMOOTHED
+    vec2 blur = texelFetch(smoothed, ivec2(position), 0).xy;
+    float coc = blur.x, sigma = blur.y;
+#else
+    float coc = coc_radius(texelFetch(inverse_depth, ivec2(position), 0).r), sigma = lens.sigma * abs(coc);
+#endif
+
+#ifdef PAPER
+    float m = paper_level(sigma);
+    float reach = exp2(m - 1.0), share = m <= 0.0 ? 0.0 : 1.0;
+    float level = max(m - 1.0, 0.0);
+    int lower = min(int(level), LAST_LEVEL - 1);
+    float mixing = clamp(level - float(lower), 0.0, 1.0);
+#else
+    // The ring gives 0.4 d^2 of the variance, two neighbouring levels the rest. Below level 0 the other neighbour is the
+    // pixel itself, so that the blur begins without a step.
+    float reach = REACH * sigma, variance = sigma * sigma;
+    float rest = variance - 4.0 * TAP * reach * reach;
+    int lower = clamp(int(0.5 * log2(max((rest + 0.25) * 2.4, 1.0))), 0, LAST_LEVEL - 1);
+    float ring = lower == 0 ? ring_variance(reach) - 4.0 * TAP * reach * reach : level_variance(lower);
+    float mixing = clamp((rest - ring) / (level_variance(lower + 1) - ring), 0.0, 1.0);
+    float share = lower == 0 && ring > rest ? variance / ring_variance(reach) : 1.0;
+#endif
+
+    vec4 center = between_levels(lower, mixing, position);
+    float weight = 1.0 - (1.0 - CENTER) * share;
+#ifndef PAPER
+    weight *= max(keep(center.a, sigma, coc), 1e-3);
+#endif
+    vec4 total = vec4(center.rgb, 1.0) * weight;
+    for (int i = 0; i < 8; ++i) {
+        vec4 tap = between_levels(lower, mixing, position + RING[i] * reach);
+        weight = TAP * share;
+#ifndef PAPER
+        weight *= keep(tap.a, sigma, coc);
+#endif
+        total += vec4(tap.rgb, 1.0) * weight;
+    }
+    color = vec4(total.rgb / total.a, 1.0);
+}
