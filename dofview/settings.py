@@ -12,6 +12,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
+from dofview import fields
 from dofview.errors import SettingsError
 from dofview.lens import Lens
 from dofview.methods import METHODS, method
@@ -80,20 +81,31 @@ def checked(model: type[M], values: dict, where: str = "") -> M:
     try:
         return model.model_validate(values)
     except ValidationError as error:
-        raise SettingsError(one_line(error, where)) from error
+        raise SettingsError(explain(error, model, where)) from error
 
 
-def one_line(error: ValidationError, where: str = "") -> str:
-    """The first complaint of a validation error: where, key, value, what is accepted."""
+def explain(error: ValidationError, model: type[BaseModel], where: str = "") -> str:
+    """The first complaint of a validation error in one line: where, key, value, what is accepted."""
     first = error.errors()[0]
     key = ".".join(str(part) for part in first["loc"])
-    value = repr(first.get("input"))
-    shown = value if len(value) <= 60 else value[:57] + "..."
-    message = first["msg"].removeprefix("Value error, ")
     prefix = f"{where}: " if where else ""
     if first["type"] == "extra_forbidden":
-        return f"{prefix}unknown parameter {key}"
-    return f"{prefix}{key} is {shown}; {message[0].lower()}{message[1:]}" if key else f"{prefix}{message}"
+        return f"{prefix}no parameter {key}; accepted: {', '.join(model.model_fields) or 'none'}"
+    message = first["msg"].removeprefix("Value error, ")
+    if not key:
+        return f"{prefix}{message}"
+    field = model.model_fields.get(key) if first["type"] != "value_error" else None
+    wanted = fields.accepted(field) if field else ""
+    return f"{prefix}{key} is {_shown(first.get('input'))}; " + (f"accepted: {wanted}" if wanted else message)
+
+
+def _shown(value: object, length: int = 60) -> str:
+    """A value as it was given, cut when it is long; a whole number of a million digits has no repr."""
+    try:
+        text = repr(value)
+    except ValueError:
+        text = "a number with too many digits"
+    return text if len(text) <= length else text[: length - 1] + "…"
 
 
 def read_view(path: Path, base: Settings) -> Settings:
@@ -104,31 +116,39 @@ def read_view(path: Path, base: Settings) -> Settings:
     try:
         view = json.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
-        raise SettingsError(f"{path}: cannot read view file: {error.strerror or error}") from error
+        raise SettingsError(f"{path}: cannot read view file: {(error.strerror or str(error)).lower()}") from error
     except (ValueError, RecursionError) as error:
         raise SettingsError(f"{path}: not a JSON view file: {error}") from error
+    return apply_view(base, view, str(path), path.parent)
+
+
+def apply_view(base: Settings, view: object, where: str, folder: Path | None = None) -> Settings:
+    """Return `base` with what `view`, the content of a view file, says; pictures are looked for in `folder` first."""
     if not isinstance(view, dict):
-        raise SettingsError(f"{path}: a view file holds one JSON object with camera, lens, image, background_linear")
+        raise SettingsError(f"{where}: a view file holds one JSON object with camera, lens, image, background_linear")
     changes: dict[str, object] = {}
     for key, model in (("camera", Camera), ("lens", Lens), ("image", ImageSettings)):
-        if view.get(key) is not None:
-            if not isinstance(view[key], dict):
-                raise SettingsError(f"{path}: {key} is {view[key]!r}; accepted: an object")
-            given = {k: v for k, v in view[key].items() if k in model.model_fields}
-            if key == "image":
-                given = {k: v for k, v in given.items() if k == "size"}
-            if key == "lens" and isinstance(given.get("image"), str):
-                given["image"] = _beside(path, given["image"])
-            changes[key] = checked(model, {**getattr(base, key).model_dump(), **given}, f"{path}: {key}")
+        if view.get(key) is None:
+            continue
+        if not isinstance(view[key], dict):
+            raise SettingsError(f"{where}: {key} is {_shown(view[key])}; accepted: an object")
+        names = {"size"} if key == "image" else model.model_fields.keys()
+        given = {k: v for k, v in view[key].items() if k in names}
+        if isinstance(given.get("image"), str):
+            given["image"] = _beside(folder, given["image"])
+        changes[key] = checked(model, {**getattr(base, key).model_dump(), **given}, f"{where}: {key}")
     if view.get("background_linear") is not None:
         changes["background_linear"] = view["background_linear"]
     try:
         return base.with_(**changes)
     except SettingsError as error:
-        raise SettingsError(f"{path}: {error}") from error
+        raise SettingsError(f"{where}: {error}") from error
 
 
-def _beside(view_file: Path, name: str) -> str:
+def _beside(folder: Path | None, name: str) -> str:
     """A picture named in a view file is looked for beside it first."""
-    candidate = view_file.parent / name
-    return str(candidate) if candidate.is_file() else name
+    try:
+        found = folder is not None and (folder / name).is_file()
+    except (OSError, ValueError):
+        found = False
+    return str(folder / name) if folder and found else name

@@ -1,0 +1,130 @@
+"""The commands and what each takes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import App, CycloptsError, Group, Parameter
+from cyclopts.exceptions import UnknownOptionError
+
+import dofview
+from dofview.cli import flags
+from dofview.cli.flags import Given
+from dofview.cli.runs import Comparing, Timing
+from dofview.errors import InputError
+from dofview.methods import METHODS, method
+
+OPENS_WITH = "demo:foreground"
+PACE = Group("Timing", sort_key=4)
+
+Spec = Annotated[str, Parameter(name="SCENE", help="A .gltf, .glb or .obj file, or demo:NAME.")]
+View = Annotated[
+    Path | None, Parameter(name=("--view", "--lens"), help="JSON file with camera, lens, image and background.")
+]
+MethodName = Annotated[str | None, Parameter(name=("--method", "-m"), help=f"One of {', '.join(METHODS)}.")]
+CameraName = Annotated[str | None, Parameter(name="--camera", help="A camera of the file, by name or number from 0.")]
+Json = Annotated[bool, Parameter(name="--json", negative="", help="As JSON.")]
+
+
+def run(tokens: Sequence[str]) -> None:
+    """Run one command; every complaint comes out as a DofviewError."""
+    chosen = flags.named_method(tokens)
+    app = make_app(chosen)
+    try:
+        app(flags.joined_switches(tokens, chosen), exit_on_error=False, print_error=False)
+    except UnknownOptionError as error:
+        raise InputError(_unknown(error, chosen)) from error
+    except CycloptsError as error:
+        error.verbose = False
+        raise InputError(f"{error}".strip().rstrip(".") + _hint(tokens)) from error
+
+
+def make_app(chosen: str | None) -> App:
+    """The command line in which the parameters of the method `chosen` are flags."""
+    app = App(
+        name="dofview", help=(dofview.__doc__ or "").splitlines()[0], version=dofview.__version__,
+        result_action="return_value", help_format="plaintext",
+    )  # fmt: skip
+    picture = flags.of_settings(chosen)
+    app.default(flags.with_flags(view, picture))
+    app.command(flags.with_flags(render, [*flags.of_model("timing", Timing, PACE), *picture]))
+    app.command(flags.with_flags(compare, [*flags.of_model("comparing", Comparing, PACE), *flags.of_settings(None)]))
+    for command in (methods, info, doctor):
+        app.command(command)
+    return app
+
+
+def view(
+    scene: Spec = OPENS_WITH, /, *, view: View = None, method: MethodName = None, camera: CameraName = None, given: Given,
+) -> None:  # fmt: skip
+    """Open the viewer. Without a scene it shows a demo."""
+    from dofview.cli.window import open_window
+
+    open_window(scene, given, view=view, method=method, camera=camera)
+
+
+def render(
+    scene: Spec, /, *, output: Annotated[Path, Parameter(name=("--output", "-o"))], view: View = None,
+    method: MethodName = None, camera: CameraName = None, given: Given,
+) -> None:  # fmt: skip
+    """Render one picture without a screen. The last line printed is a JSON object with its time and counts.
+
+    Parameters
+    ----------
+    output
+        .png (sRGB), .exr or .npy (float32 linear RGB).
+    """
+    from dofview.cli.picture import render_to
+
+    render_to(scene, output, given, view=view, method=method, camera=camera)
+
+
+def compare(
+    scene: Spec = OPENS_WITH, /, *, out: Annotated[Path, Parameter(help="Folder for the pictures.")] = Path("out"),
+    view: View = None, camera: CameraName = None,
+    methods: Annotated[str | None, Parameter(help="Names with commas between; all when not given.")] = None,
+    json: Json = False, given: Given,
+) -> None:  # fmt: skip
+    """Render every method and the reference into a folder, and print PSNR, SSIM and milliseconds of each."""
+    from dofview.cli.comparing import compare_into
+
+    compare_into(scene, out, given, view=view, camera=camera, methods=methods, json=json)
+
+
+def methods(name: str | None = None, /, *, json: Json = False) -> None:
+    """List the methods, or the parameters, ranges and source of one."""
+    from dofview.cli.facts import show_methods
+
+    show_methods(name, json)
+
+
+def info(scene: Spec, /, *, json: Json = False) -> None:
+    """Say what is in a scene: triangles, draws, bounds, textures, cameras, and what could not be read."""
+    from dofview.cli.facts import show_scene
+
+    show_scene(scene, json)
+
+
+def doctor(*, json: Json = False) -> None:
+    """Say which OpenGL there is, what it can do, and what to install when it is not enough."""
+    from dofview.cli.facts import show_doctor
+
+    show_doctor(json)
+
+
+def _unknown(error: UnknownOptionError, chosen: str | None) -> str:
+    flag = str(error.token.keyword or error.token.value) if error.token else str(error)
+    names = [n for a in error.argument_collection or () for n in a.names if n.startswith("--")]
+    having = [name for name in flags.owners(flag) if name != chosen]
+    belongs = f" (a parameter of {', '.join(having)})" if having else ""
+    first = [flags.fields.flag(n) for n in method(chosen).Params.model_fields] if chosen else []
+    others = [n for n in dict.fromkeys(names) if n not in first and not n.startswith("--no-")]
+    return f"unknown flag {flag[:60]}{belongs}; accepted: {', '.join([*first, *others])}"
+
+
+def _hint(tokens: Sequence[str]) -> str:
+    known = ("render", "compare", "methods", "info", "doctor")
+    command = next((t for t in tokens if t in known), "")
+    return f"; see dofview {command + ' ' if command else ''}--help"

@@ -1,0 +1,95 @@
+"""`dofview render` and `dofview compare`: pictures without a screen."""
+
+from __future__ import annotations
+
+import json as jsonlib
+import statistics
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from dofview import export
+from dofview.cli.chosen import settings_for
+from dofview.cli.flags import Given
+from dofview.cli.runs import Timing
+from dofview.errors import GLError
+from dofview.gl.context import create_headless
+from dofview.pipeline import Pipeline, Result
+from dofview.scene.load import load
+from dofview.scene.model import Scene
+from dofview.settings import Settings, checked
+
+MOST_NOTES = 5
+
+
+def render_to(
+    spec: str, output: Path, given: Given, *, view: Path | None, method: str | None, camera: str | None
+) -> None:
+    """Render one picture into `output` and print its facts, the last line as JSON."""
+    timing = checked(Timing, given.get("timing", {}), "render")
+    export.check_writable(output)
+    scene = load(spec)
+    settings = settings_for(scene, spec, given, view=view, method=method, camera=camera)
+    tell_warnings(scene)
+    with headless(scene) as pipeline:
+        result, milliseconds = timed(pipeline, settings, timing.frames)
+        export.save(output, result.pixels())
+        facts = {
+            "ms": round(statistics.median(milliseconds), 3),
+            "method": settings.method,
+            "size": list(settings.image.size),
+            "renderer": pipeline.gpu.renderer,
+            "clock": "wall",
+            "frames": len(milliseconds),
+            "warm": timing.frames is not None,
+            "counts": result.counts,
+            "parameters": settings.method_params.model_dump(mode="json"),
+            "scale": settings.image.scale,
+            "guard_px": result.frame.guard,
+            "triangles": scene.triangle_count,
+            "scene": spec,
+            "output": str(output),
+        }
+    print(jsonlib.dumps(facts))
+
+
+@contextmanager
+def headless(scene: Scene) -> Iterator[Pipeline]:
+    """A pipeline for `scene` in a context of its own, released at the end."""
+    gpu = create_headless()
+    try:
+        yield Pipeline(gpu, scene)
+    finally:
+        gpu.release()
+        gpu.ctx.release()
+
+
+def timed(pipeline: Pipeline, settings: Settings, frames: int | None) -> tuple[Result, list[float]]:
+    """Render `frames` whole frames after a warm-up, or one without when None: the last picture, milliseconds of each.
+
+    Nothing is kept from one frame to the next, and each is waited for; reading back and writing is not in the time.
+    """
+    if frames is not None:
+        pipeline.render(settings)
+    milliseconds = []
+    for _ in range(frames or 1):
+        pipeline.forget()
+        pipeline.gpu.ctx.finish()
+        start = time.perf_counter()
+        result = pipeline.render(settings)
+        pipeline.gpu.ctx.finish()
+        milliseconds.append((time.perf_counter() - start) * 1e3)
+    complaint = pipeline.gpu.ctx.error
+    if complaint != "GL_NO_ERROR":
+        raise GLError(f"OpenGL reports {complaint} while rendering {settings.method}; a smaller picture may fit")
+    return result, milliseconds
+
+
+def tell_warnings(scene: Scene) -> None:
+    """What a scene file asked for that is not shown, a line each."""
+    for warning in scene.warnings[:MOST_NOTES]:
+        print(f"dofview: note: {warning}", file=sys.stderr)
+    if len(scene.warnings) > MOST_NOTES:
+        print(f"dofview: note: and {len(scene.warnings) - MOST_NOTES} more; see dofview info", file=sys.stderr)
