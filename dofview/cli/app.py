@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from cyclopts import App, CycloptsError, Group, Parameter
 from cyclopts.exceptions import UnknownOptionError
@@ -57,7 +57,8 @@ def make_app(chosen: str | None) -> App:
 
 
 def view(
-    scene: Spec = OPENS_WITH, /, *, view: View = None, method: MethodName = None, camera: CameraName = None, given: Given,
+    scene: Spec = OPENS_WITH, /, *, view: View = None, method: MethodName = None, camera: CameraName = None,
+    given: Given,
 ) -> None:  # fmt: skip
     """Open the viewer. Without a scene it shows a demo."""
     from dofview.cli.window import open_window

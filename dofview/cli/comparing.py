@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+
 from dofview import export, metrics
 from dofview.cli.chosen import settings_for
 from dofview.cli.flags import Given

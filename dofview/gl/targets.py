@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-
 # moderngl calls normalised bytes "f1"; numpy knows them as bytes.
 _NUMPY = {"f1": "u1"}
 

@@ -1,0 +1,24 @@
+"""`dofview [SCENE]`: everything that can be refused without a window is, then the viewer opens."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from dofview.cli.chosen import settings_for
+from dofview.cli.facts import screen
+from dofview.cli.flags import Given
+from dofview.errors import GLError
+from dofview.scene.load import load
+
+
+def open_window(spec: str, given: Given, *, view: Path | None, method: str | None, camera: str | None) -> None:
+    """Open the viewer on a scene; GLError where there is no screen to open it on."""
+    if screen() is None:
+        raise GLError(
+            "no screen for a window (neither DISPLAY nor WAYLAND_DISPLAY is set); "
+            "without one: dofview render SCENE -o picture.png, dofview compare SCENE, or xvfb-run dofview"
+        )
+    settings = settings_for(load(spec), spec, given, view=view, method=method, camera=camera)
+    from dofview import viewer
+
+    viewer.run(spec, settings)
