@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+BATCH = 100_000  # triangles at a time, so that the float64 temporaries of a large model stay small
+
 
 def unit(vectors: np.ndarray) -> np.ndarray:
     """Scale (n, 3) vectors to unit length, zero where they have none."""
@@ -14,11 +16,11 @@ def unit(vectors: np.ndarray) -> np.ndarray:
 
 
 def face_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(m, 3) float64 unit normals of the (m, 3) `triangles`, counter-clockwise; +z for triangles without area."""
-    corners = np.asarray(positions, np.float64)[triangles]
-    first, second = unit(corners[:, 1] - corners[:, 0]), unit(corners[:, 2] - corners[:, 0])
-    normals = unit(np.cross(first, second))
-    normals[~normals.any(axis=1)] = (0.0, 0.0, 1.0)
+    """(m, 3) float32 unit normals of the (m, 3) `triangles`, counter-clockwise; +z for triangles without area."""
+    normals = np.empty((len(triangles), 3), np.float32)
+    for start in range(0, len(triangles), BATCH):
+        corners = np.asarray(positions[triangles[start : start + BATCH]], np.float64)
+        normals[start : start + BATCH] = _or_z(_normals_of(corners))
     return normals
 
 
@@ -29,17 +31,25 @@ def smooth_normals(positions: np.ndarray, triangles: np.ndarray, keys: np.ndarra
     normal (default: those with the same position index); then the result has one row for each key.
     """
     keys = triangles if keys is None else keys
-    count = len(positions) if keys is triangles else int(keys.max(initial=-1)) + 1
-    corners = np.asarray(positions, np.float64)[triangles]
-    edges = unit(np.roll(corners, -1, axis=1) - corners)  # (m, 3, 3): edge i runs from corner i to corner i + 1
-    angles = np.arccos(np.clip(-(edges * np.roll(edges, 1, axis=1)).sum(axis=-1), -1.0, 1.0))
-    normals = face_normals(positions, triangles)
-    flat_area = ~np.cross(edges[:, 0], edges[:, 1]).any(axis=-1)
-    angles[flat_area] = 0.0
-    sums = np.stack(
-        [np.bincount(keys.ravel(), (angles * normals[:, axis, None]).ravel(), minlength=count) for axis in range(3)],
-        axis=-1,
-    )
-    sums = unit(sums.reshape(count, 3))
-    sums[~sums.any(axis=1)] = (0.0, 0.0, 1.0)
-    return sums.astype(np.float32)
+    count = max(len(positions) if keys is triangles else 0, int(keys.max(initial=-1)) + 1)
+    sums = np.zeros((count, 3))
+    batch = max(BATCH, len(triangles) // 16)  # each batch costs a pass over all sums
+    for start in range(0, len(triangles), batch):
+        corners = np.asarray(positions[triangles[start : start + batch]], np.float64)
+        edges = unit(np.roll(corners, -1, axis=1) - corners)  # (m, 3, 3): edge i runs from corner i to corner i + 1
+        cosines = -(edges * np.roll(edges, 1, axis=1)).sum(axis=-1)
+        weighted = np.arccos(np.clip(cosines, -1.0, 1.0))[..., None] * _normals_of(corners)[:, None]
+        places = keys[start : start + batch].ravel()
+        for axis in range(3):
+            sums[:, axis] += np.bincount(places, weighted[..., axis].ravel(), minlength=count)
+    return _or_z(unit(sums)).astype(np.float32)
+
+
+def _normals_of(corners: np.ndarray) -> np.ndarray:
+    """(m, 3) unit normals of triangles given as (m, 3, 3) corners, zero for those without area."""
+    return unit(np.cross(unit(corners[:, 1] - corners[:, 0]), unit(corners[:, 2] - corners[:, 0])))
+
+
+def _or_z(normals: np.ndarray) -> np.ndarray:
+    normals[~normals.any(axis=-1)] = (0.0, 0.0, 1.0)
+    return normals

@@ -152,7 +152,7 @@ class Geometry:
             made,
             positions=made.positions[order],
             triangles=np.arange(len(order), dtype=np.uint32).reshape(-1, 3),
-            normals=np.repeat(face_normals(made.positions, made.triangles), 3, axis=0).astype(np.float32),
+            normals=np.repeat(face_normals(made.positions, made.triangles), 3, axis=0),
             texcoords=tuple(None if t is None else t[order] for t in made.texcoords),
             colors=None if made.colors is None else made.colors[order],
         )

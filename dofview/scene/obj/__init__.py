@@ -1,0 +1,59 @@
+"""Wavefront OBJ with MTL libraries, into the scene model.
+
+statements   text → flat arrays of numbers and indices
+polygons     faces of any number of corners → triangles
+mesh         welding, normals, one primitive for each material
+library      MTL text → entries
+materials    entries and pictures → materials
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from dofview.scene.files import Folder
+from dofview.scene.model import Instance, Material, Scene
+from dofview.scene.notes import Notes
+from dofview.scene.obj.materials import Materials
+from dofview.scene.obj.mesh import primitives, slots_of, triangles_of
+from dofview.scene.obj.statements import scan
+
+
+def read(data: bytes, name: str, folder: Folder) -> Scene:
+    """Read the bytes of an .obj file whose libraries and textures are taken in `folder`; ModelError says why not."""
+    notes = Notes()
+    made = scan(data, notes)
+    triangles = triangles_of(made, folder.account, notes)
+    materials = Materials(folder, notes)
+    materials.read_libraries(made.libraries)
+    slots = slots_of(made, triangles, materials.slot)
+    origin = origin_for(made.positions[triangles.corners[..., 0].ravel()])
+    parts = []
+    for part in primitives(made, triangles, slots, origin, notes):
+        folder.account.charge_draw(0)  # its triangles are charged already
+        parts.append(part)
+    matrix = np.eye(4)
+    matrix[:3, 3] = origin
+    return Scene(
+        name=name,
+        primitives=tuple(parts),
+        instances=tuple(Instance(index, matrix) for index in range(len(parts))),
+        materials=tuple(materials.made) or (Material(),),
+        warnings=notes.texts(),
+    )
+
+
+def origin_for(positions: np.ndarray) -> np.ndarray:
+    """(3,) float64 to subtract so that float32 keeps the decimals of a model far from the origin.
+
+    The centre of the box rounded to a multiple of a power of two no smaller than the box: zero for a model that is not
+    far away for its size.
+    """
+    if len(positions) == 0:
+        return np.zeros(3)
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    size = float((high - low).max())
+    step = 2.0 ** math.ceil(math.log2(size)) if size > 0 else 2.0**-20
+    return np.round((low + high) / 2 / step) * step
