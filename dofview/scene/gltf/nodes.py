@@ -95,7 +95,7 @@ def camera(fields: Fields, world: np.ndarray, notes: Notes) -> SceneCamera | Non
     if lens is None:
         notes.say(f"{fields.where} '{name}' is not a perspective camera; not offered")
         return None
-    vfov, near, far = lens.number("yfov"), lens.number("znear", 0.0), lens.number("zfar", None)
+    vfov, near, far = lens.number("yfov"), max(lens.number("znear", 0.0), 0.0), lens.number("zfar", None)
     backward = unit(world[:3, 2])
     right = unit(np.cross(world[:3, 1], backward))
     if not 0 < vfov < math.radians(179) or not backward.any() or not right.any():
