@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from dofview.errors import InputError
+from dofview.errors import ModelError
 from dofview.scene.camera import Camera
 from dofview.scene.demo import background, foreground, highlights, rail, studies
 from dofview.scene.demo.parts import Part, assemble
@@ -58,7 +58,7 @@ def _parse(name: str) -> tuple[str, int | None]:
     match = _NAME.fullmatch(name)
     if match is None or match["name"] not in DEMOS:
         names = ", ".join(DEMOS)
-        raise InputError(f"unknown demo scene {name!r}; accepted: {names}, or with a triangle count, as rail@216k")
+        raise ModelError(f"unknown demo scene {name!r}; accepted: {names}, or with a triangle count, as rail@216k")
     if match["count"] is None:
         return match["name"], None
     return match["name"], round(float(match["count"]) * {"": 1, "k": 1_000, "m": 1_000_000}[match["unit"]])
@@ -67,7 +67,7 @@ def _parse(name: str) -> tuple[str, int | None]:
 def build(name: str) -> Scene:
     """Make the demo scene `name`, cut into about n triangles when called `name@n`, `name@nk` or `name@nm`.
 
-    Raises InputError for a name or a count that there is not.
+    Raises ModelError for a name or a count that there is not.
     """
     base, triangles = _parse(name)
     demo = DEMOS[base]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dofview.errors import InputError
+from dofview.errors import ModelError
 from dofview.scene.camera import Camera
 from dofview.scene.demo.shapes import Patch, Shape
 from dofview.scene.model import Instance, Material, Picture, Primitive, Scene, SceneCamera, Texture
@@ -37,7 +37,7 @@ def lamp(name: str, light: tuple[float, float, float]) -> Material:
 def assemble(name: str, parts: Sequence[Part], camera: Camera, triangles: int | None = None) -> Scene:
     """Cut every part and join those of one material into one primitive.
 
-    With `triangles` the cells of all patches are scaled alike until the total comes closest to it. Raises InputError
+    With `triangles` the cells of all patches are scaled alike until the total comes closest to it. Raises ModelError
     where the shapes cannot be cut that coarsely, or the count is beyond what is sensible.
     """
     patches = [patch for part in parts for patch in part.shape]
@@ -62,7 +62,7 @@ def assemble(name: str, parts: Sequence[Part], camera: Camera, triangles: int | 
 def _scale_for(name: str, patches: list[Patch], triangles: int) -> float:
     least = sum(patch.count(0.0) for patch in patches)
     if not least <= triangles <= MOST_TRIANGLES:
-        raise InputError(f"demo scene {name!r} with {triangles} triangles; accepted: {least} to {MOST_TRIANGLES}")
+        raise ModelError(f"demo scene {name!r} with {triangles} triangles; accepted: {least} to {MOST_TRIANGLES}")
     low, high = 0.0, 1.0
     while sum(patch.count(high) for patch in patches) < triangles:
         high *= 2
