@@ -11,7 +11,7 @@ import pytest
 from dofview.errors import ModelError
 from dofview.scene import demo
 from dofview.scene.camera import Camera
-from dofview.scene.demo import patterns, shapes
+from dofview.scene.demo import shapes, texels
 from dofview.scene.model import Scene
 
 NAMES = tuple(demo.DEMOS)
@@ -92,7 +92,9 @@ def test_arrays_are_sound_and_textured(name):
     for primitive in scene.primitives:
         material = scene.materials[primitive.material]
         assert material.base_color_texture is not None or max(material.emissive) == 50.0
-        uv = primitive.texcoords[0]
+        uv, colors = primitive.texcoords[0], primitive.colors
+        if colors is not None:
+            assert colors.dtype == np.float32 and colors.min() >= 0 and colors.max() <= 1 and np.ptp(colors) > 0.05
         assert primitive.positions.dtype == primitive.normals.dtype == uv.dtype == np.float32
         assert primitive.triangles.dtype == np.uint32 and primitive.triangles.max() < len(primitive.positions)
         assert np.isfinite(primitive.positions).all() and np.isfinite(uv).all()
@@ -149,10 +151,13 @@ def test_view_is_a_view_file(name):
 
 def test_highlights_are_small_bright_and_behind_focus():
     scene, view = built("highlights"), demo.view("highlights")
-    lamps = [p for p in scene.primitives if max(scene.materials[p.material].emissive) > 0]
+    lamps = [p for p in scene.primitives if max(scene.materials[p.material].emissive) == 50.0]
     assert any(scene.materials[p.material].emissive == (50.0, 50.0, 50.0) for p in lamps)
     for lamp in lamps:
-        assert coc(project(lamp.positions, view)[2], view).min() > 6
+        x, _, depth = project(lamp.positions, view)
+        assert coc(depth, view).min() > 6
+        triangles = x[lamp.triangles] * view["image"]["size"][0] / 2
+        assert np.ptp(triangles, axis=1).max() < 4  # pixels: none of the lamps' facets, nor the lamps, are large
 
 
 def test_surfaces_close_and_carry_their_analytic_normals():
@@ -176,7 +181,7 @@ def test_surfaces_close_and_carry_their_analytic_normals():
 
 
 def test_noise_is_periodic_and_one_over_f():
-    field = patterns.noise(3, 1.0)
+    field = texels.noise(3, 1.0)
     assert np.abs(field[:, 0] - field[:, -1]).mean() < 1.5 * np.abs(np.diff(field, axis=1)).mean()
     power = np.abs(np.fft.rfft2(field - field.mean())) ** 2
     radius = np.hypot(np.fft.fftfreq(512)[:, None], np.fft.rfftfreq(512)[None, :]) * 512

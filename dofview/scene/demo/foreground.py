@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dofview.scene.demo import patterns as paint
-from dofview.scene.demo.parts import Part, painted
+from dofview.scene.demo.parts import Part, both, near, painted, standing
 from dofview.scene.demo.shapes import Shape, box, lathe, place, sheet, sphere, tube
 
 VIEW = {
@@ -46,6 +46,7 @@ VASE = (
     (0.15, 0.92),
 )
 BOWL = ((0.0, 0.0), (0.16, 0.0), (0.18, 0.05), (0.34, 0.17), (0.4, 0.3), (0.37, 0.29), (0.3, 0.18), (0.0, 0.08))
+TOP = 0.22
 BOTTLE = (
     (0.0, 0.0),
     (0.15, 0.0),
@@ -61,11 +62,10 @@ BOTTLE = (
 
 def parts() -> list[Part]:
     """All shapes with their materials."""
-    return [
-        Part(sheet((-4.5, -1.8, 0), (9, 0, 0), (0, 6.6, 0), (12, 9), 2.4), painted("tiles", paint.azulejo(), 0.35)),
-        *_shelf(),
-        *_curtain(),
-    ]
+    shelf = [(0.9 * x, TOP - 0.05, 0.3, 0.4) for x in np.arange(-5, 6)]
+    wall = near(*shelf, (-1.75, 0.6, 0.32, 0.38), (0.2, 0.4, 0.4, 0.35), (1.55, 0.5, 0.3, 0.2), strength=0.6)
+    tiles = painted("tiles", paint.azulejo(), 0.5, tint=0.9)
+    return [Part(sheet((-4.5, -1.8, 0), (9, 0, 0), (0, 6.6, 0), (40, 30), 2.4), tiles, wall), *_shelf(), *_curtain()]
 
 
 def _curtain() -> list[Part]:
@@ -84,7 +84,7 @@ def _curtain() -> list[Part]:
         x, z = across * half * 4 / 3, VIEW["camera"]["position"][2] - distance
         rods.append(tube([(x, 1.5 - 1.3 * half, z), (x, 1.5 + 1.3 * half, z)], 0.0045 * distance, (8, 8), 0.4))
         for nth, (height, radius) in enumerate(threaded):
-            ball = sphere(radius * distance, (20, 12))
+            ball = sphere(radius * distance, (18, 11))
             turn = (15.0 * nth - 20, 40.0 * index, 25.0 * (nth % 3) - 25)
             shapes[(index * 2 + nth) % len(beads)].append(place(ball, (x, 1.5 + height * half, z), turn))
     rods.append(tube([(-1.5, 0.1, 2.6), (0.1, 1.35, 2.2), (2.4, 3.1, 1.7)], 0.022, (10, 12), 0.5))
@@ -93,18 +93,18 @@ def _curtain() -> list[Part]:
 
 
 def _shelf() -> list[Part]:
-    oak = painted("oak", paint.wood(41, ("4a2c17", "7a4c28", "a87240", "c69458"), 2, 256), 0.6)
+    oak = painted("oak", paint.wood(41, ("4a2c17", "7a4c28", "a87240", "c69458"), 2, 256), 0.7)
     blue = painted("vase", paint.kilim(42, ("1d3f7a", "f4efe2", "d9942f", "7fb2d9"), 6), 0.3)
     clay = painted("clay", paint.plaster(43, ("8a3f22", "b65a31", "d07a48")), 0.8)
     glass = painted("bottle", paint.stripes(44, ("23513f", "2f6b52", "e2d9b8", "2f6b52"), 16), 0.2)
     fruit = painted("orange", paint.plaster(45, ("d9701a", "f08c24", "f6a93b"), 0.7), 0.5)
-    top = 0.22
-    oranges = [((-0.12, 0.26, 0.05), 0.13), ((0.13, 0.27, 0.02), 0.14), ((0.02, 0.4, 0.02), 0.13)]
+    oranges = [(0.08, 0.48, 0.45, 0.13), (0.33, 0.49, 0.42, 0.14), (0.22, 0.62, 0.42, 0.13)]
+    on_shelf = standing(TOP, 0.15)
     return [
-        Part(place(box((9.0, 0.1, 0.6), 0.02, 8, 1.5), (0, top - 0.05, 0.3)), oak),
-        Part(place(lathe(VASE, (32, 24), (3, 1)), (-1.75, top, 0.32)), blue),
-        Part(place(lathe(BOWL, (32, 16), (4, 1)), (0.2, top, 0.4), scale=1.1), clay),
-        Part(sum((place(sphere(r), (0.2 + x, top + y, 0.4 + z)) for (x, y, z), r in oranges), ()), fruit),
-        Part(place(lathe(BOTTLE, (24, 20), (2, 1)), (1.55, top, 0.3)), glass),
-        Part(place(lathe(VASE, (24, 16), (3, 1)), (2.2, top, 0.36), scale=0.6), clay),
+        Part(place(box((9.0, 0.1, 0.6), 0.02, 8, 1.5), (0, TOP - 0.05, 0.3)), oak, standing(TOP - 0.1, 0.02)),
+        Part(place(lathe(VASE, (32, 24), (3, 1)), (-1.75, TOP, 0.32)), blue, on_shelf),
+        Part(place(lathe(BOWL, (32, 16), (4, 1)), (0.2, TOP, 0.4), scale=1.1), clay, on_shelf),
+        Part(sum((place(sphere(r), at) for *at, r in oranges), ()), fruit, both(standing(TOP, 0.2), near(*oranges))),
+        Part(place(lathe(BOTTLE, (24, 20), (2, 1)), (1.55, TOP, 0.3)), glass, on_shelf),
+        Part(place(lathe(VASE, (24, 16), (3, 1)), (2.2, TOP, 0.36), scale=0.6), clay, on_shelf),
     ]

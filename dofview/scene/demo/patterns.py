@@ -1,87 +1,16 @@
 """The textures of the demo scenes: periodic pictures made of 1/f noise and hard edges, the same on every run.
 
 Depth of field is judged where detail meets blur, so every picture has energy at all scales and some sharp contours.
-Colours are sRGB in 0..1 until `picture` stores them as 8 bit.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 
 import numpy as np
 
+from dofview.scene.demo.texels import SIZE, cells, grid, inside, mix, noise, picture, ramp, rgb
 from dofview.scene.model import Picture
-
-SIZE = 512
-
-
-def rgb(code: str) -> np.ndarray:
-    """(3,) sRGB in 0..1 of a colour written as rrggbb."""
-    return np.array([int(code[i : i + 2], 16) for i in (0, 2, 4)]) / 255.0
-
-
-@lru_cache(maxsize=32)
-def noise(seed: int, exponent: float = 1.0, stretch: float = 1.0, size: int = SIZE) -> np.ndarray:
-    """(size, size) periodic noise with amplitude 1/f^exponent, mean 0.5, deviation 0.17, clipped to 0..1.
-
-    `stretch` > 1 draws it out along rows, as wood grain.
-    """
-    spectrum = np.fft.rfft2(np.random.default_rng(seed).random((size, size)) - 0.5)
-    rows, columns = np.fft.fftfreq(size)[:, None], np.fft.rfftfreq(size)[None, :] * stretch
-    frequency = np.hypot(rows, columns) * size
-    spectrum *= np.where(frequency > 0, np.maximum(frequency, 1.0) ** -exponent, 0.0)
-    field = np.fft.irfft2(spectrum, s=(size, size))
-    return np.clip(0.5 + 0.17 * field / field.std(), 0.0, 1.0)
-
-
-def grid(size: int = SIZE) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of the pixel centres in 0..1, y downwards."""
-    axis = (np.arange(size) + 0.5) / size
-    return np.meshgrid(axis, axis)
-
-
-def inside(distance: np.ndarray, pixel: float = 1.0 / SIZE) -> np.ndarray:
-    """Coverage, 1 where the signed `distance` to a contour is negative, with an edge one pixel wide."""
-    return np.clip(0.5 - distance / pixel, 0.0, 1.0)
-
-
-def mix(under: np.ndarray, over: np.ndarray, cover: np.ndarray) -> np.ndarray:
-    """Lay colour `over` on colour `under` where `cover` (h, w) is 1."""
-    return under + (over - under) * cover[..., None]
-
-
-def ramp(field: np.ndarray, codes: Sequence[str]) -> np.ndarray:
-    """Colour a field in 0..1 with evenly spaced colours."""
-    stops = np.array([rgb(code) for code in codes])
-    at = np.linspace(0.0, 1.0, len(stops))
-    return np.stack([np.interp(field, at, stops[:, k]) for k in range(3)], axis=-1)
-
-
-def cells(seed: int, count: int, size: int = SIZE) -> tuple[np.ndarray, np.ndarray]:
-    """Periodic Voronoi cells on a jittered count×count lattice: index of the cell and half the gap to its neighbour."""
-    jitter = np.random.default_rng(seed).random((count, count, 2))
-    x, y = (axis * count for axis in grid(size))
-    column, row = np.floor(x).astype(int), np.floor(y).astype(int)
-    nearest, second = np.full(x.shape, 9.0), np.full(x.shape, 9.0)
-    owner = np.zeros(x.shape, dtype=int)
-    for dr in (-2, -1, 0, 1, 2):
-        for dc in (-2, -1, 0, 1, 2):
-            r, c = (row + dr) % count, (column + dc) % count
-            site = jitter[r, c]
-            distance = np.hypot(column + dc + site[..., 0] - x, row + dr + site[..., 1] - y)
-            second = np.minimum(second, np.maximum(nearest, distance))
-            owner = np.where(distance < nearest, r * count + c, owner)
-            nearest = np.minimum(nearest, distance)
-    return owner, (second - nearest) / 2 / count
-
-
-def picture(name: str, color: np.ndarray) -> Picture:
-    """Store sRGB colours (h, w, 3) in 0..1 as an opaque picture, in 64 steps a channel so that files stay small."""
-    steps = np.round(np.clip(color, 0.0, 1.0) * 63).astype(np.uint8)
-    pixels = np.full((*color.shape[:2], 4), 255, dtype=np.uint8)
-    pixels[..., :3] = (steps << 2) | (steps >> 4)
-    return Picture(name, pixels)
 
 
 def azulejo() -> Picture:
@@ -213,16 +142,13 @@ def checker(seed: int, codes: tuple[str, str], squares: int = 8, size: int = 256
 
 
 def stripes(seed: int, codes: Sequence[str], count: int = 8, size: int = 256) -> Picture:
-    """Bands of even width around v, weathered."""
+    """Bands of even width along v, worn through to bone in places."""
     _, y = grid(size)
     palette = np.array([rgb(code) for code in codes])
     color = palette[np.floor(y * count).astype(int) % len(codes)]
-    worn = noise(seed, 1.0, 1.0, size)
-    return picture(
-        "stripes",
-        mix(color, rgb("d8cbb2"), inside(0.24 - worn + 0.02, 0.05) * 0.0 + np.clip((worn - 0.72) * 6, 0, 0.7))
-        * (0.75 + 0.45 * noise(seed + 1, 0.8, 1.0, size))[..., None],
-    )
+    worn = np.clip((noise(seed, 1.0, 1.0, size) - 0.72) * 6, 0, 0.7)
+    grain = 0.75 + 0.45 * noise(seed + 1, 0.8, 1.0, size)
+    return picture("stripes", mix(color, rgb("d8cbb2"), worn) * grain[..., None])
 
 
 def plaster(seed: int, codes: Sequence[str], exponent: float = 1.0, stretch: float = 1.0, size: int = 256) -> Picture:
@@ -241,3 +167,27 @@ def bricks(seed: int, codes: Sequence[str], rows: int = 8) -> Picture:
     edge = np.minimum(np.abs((y * rows + 0.5) % 1 - 0.5) / rows, np.abs((shifted + 0.5) % 1 - 0.5) * 2 / rows)
     ragged = 0.004 + 0.004 * (noise(seed + 2, 0.8) - 0.5)
     return picture("bricks", mix(color, ramp(noise(seed + 3), ("857a6b", "b8ad9b")), inside(edge - ragged)))
+
+
+def facade(seed: int, columns: int = 4, rows: int = 4) -> Picture:
+    """A house front at night: brick, and sash windows of which some are lit, with curtains."""
+    rng = np.random.default_rng(seed)
+    x, y = grid()
+    column, row = np.floor(x * columns).astype(int), np.floor(y * rows).astype(int)
+    px, py = (x * columns - column - 0.5) * 2, (y * rows - row - 0.5) * 2
+    pixel = 2 * rows / SIZE
+    color = bricks(seed + 1, ("24140f", "3a1e18", "552d22"), 32).pixels[..., :3] / 255.0
+    color *= 0.75 - 0.45 * (color.min(axis=-1, keepdims=True) > 0.3)  # mortar is as dark as the brick
+    lit = rng.random((rows, columns)) < 0.45
+    lamps = np.array([rgb(code) for code in ("ffca7a", "ffdf9e", "e8a552", "9fc4d8")])[
+        rng.integers(0, 4, (rows, columns))
+    ]
+    glow = lamps[row, column] * (0.75 + 0.25 * np.cos(1.3 * px) * (1 - 0.3 * py))[..., None]
+    curtain = 0.62 + 0.2 * np.sin(42 * px)
+    glow = mix(glow, glow * 0.45, inside(0.26 - np.abs(px), pixel) * (curtain > 0.6))
+    pane = np.where(lit[row, column][..., None], glow, rgb("10151f") + 0.06 * noise(seed + 2)[..., None])
+    frame = np.maximum(np.abs(px) - 0.48, np.abs(py) - 0.66)
+    bars = np.minimum(np.abs(px), np.abs(py + 0.05)) - 0.025
+    color = mix(color, rgb("4a4036"), inside(frame - 0.09, pixel))
+    color = mix(color, pane, inside(frame, pixel))
+    return picture("facade", mix(color, rgb("3a3028"), inside(np.maximum(bars, frame), pixel)))

@@ -21,7 +21,8 @@ class Patch:
 
     `surface(u, v)` gives positions and unit normals (…, 3); `cells` is how it is cut by default along u and v;
     `repeat` is how often the texture goes over it; `poles` are the ends of v that shrink to a point; `bevel` is the
-    share of u and of v, at either end, that a rounded edge takes and that a quarter of the cells go to.
+    share of u and of v, at either end, that a rounded edge takes and that a quarter of the cells go to; `texture(u, v)`
+    replaces `repeat` where texture coordinates are not in proportion to u and v.
     """
 
     surface: Surface
@@ -30,6 +31,7 @@ class Patch:
     poles: tuple[bool, bool] = (False, False)
     least: tuple[int, int] = (1, 1)
     bevel: tuple[float, float] | None = None
+    texture: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
 
     def cut(self, scale: float) -> tuple[int, int]:
         """Cells along u and v when the default is made `scale` times as fine."""
@@ -54,7 +56,8 @@ class Patch:
         a, b, c = (positions[triangles[:, k]] for k in range(3))
         if np.sum(np.cross(b - a, c - a) * normals[triangles[:, 0]]) < 0:
             triangles = triangles[:, ::-1]
-        return positions, normals, np.stack([u, v], axis=-1) * self.repeat, triangles
+        texcoords = self.texture(u, v) if self.texture else np.stack([u, v], axis=-1) * self.repeat
+        return positions, normals, texcoords, triangles
 
 
 def _steps(count: int, bevel: float | None) -> np.ndarray:
@@ -88,11 +91,6 @@ def place(shape: Shape, at: Point = (0, 0, 0), turn: Point = (0, 0, 0), scale: f
     return tuple(replace(patch, surface=moved(patch.surface)) for patch in shape)
 
 
-def textured(shape: Shape, times: float) -> Shape:
-    """Repeat the texture `times` as often, to the nearest whole number where it has to close around the shape."""
-    return tuple(replace(p, repeat=(p.repeat[0] * times, p.repeat[1] * times)) for p in shape)
-
-
 def sheet(origin: Point, across: Point, along: Point, cells: tuple[int, int], tile: float = 1.0) -> Shape:
     """A flat parallelogram from `origin`; its texture repeats every `tile` units. The normal is across × along."""
     o, a, b = (np.array(x, dtype=np.float64) for x in (origin, across, along))
@@ -102,6 +100,23 @@ def sheet(origin: Point, across: Point, along: Point, cells: tuple[int, int], ti
         return o + u[:, None] * a + v[:, None] * b, np.broadcast_to(normal, (len(u), 3))
 
     return (Patch(surface, cells, (float(np.linalg.norm(a)) / tile, float(np.linalg.norm(b)) / tile)),)
+
+
+def ground(eye: float, near: float, far: float, cells: tuple[int, int], tile: float, height: float = 0.0) -> Shape:
+    """A level floor between the distances `near` and `far` along −z from z = `eye`, as wide as the view and half more.
+
+    Its cells grow with the distance, so that they are much the same size in the picture and carry shade well.
+    """
+
+    def spot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        distance = near * (far / near) ** v
+        return np.stack([(2 * u - 1) * 0.75 * distance, eye - distance], axis=-1)
+
+    def surface(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        x, z = spot(u, v).T
+        return np.stack([x, np.full_like(x, height), z], axis=-1), np.broadcast_to(np.eye(3)[1], (len(u), 3))
+
+    return (Patch(surface, cells, texture=lambda u, v: spot(u, v) / tile),)
 
 
 def lathe(
