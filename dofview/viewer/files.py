@@ -1,0 +1,56 @@
+"""Files in and out of the viewer: dialogs, scenes with their views, pictures."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+from PIL import Image as Picture
+
+from dofview.errors import OutputError
+from dofview.export import write_whole
+from dofview.framing import opening
+from dofview.scene.load import load
+from dofview.scene.model import Scene
+from dofview.settings import Settings
+
+
+def has_dialog() -> bool:
+    """Whether the desktop offers a file dialog; without one portable_file_dialogs answers like Cancel."""
+    return not sys.platform.startswith("linux") or any(shutil.which(name) for name in ("zenity", "kdialog"))
+
+
+def ask_for_scene() -> str | None:
+    """Return a scene file the person chose, or None."""
+    if not has_dialog():
+        return None
+    from imgui_bundle import portable_file_dialogs
+
+    chosen = portable_file_dialogs.open_file("Open a scene", "", ["Scenes", "*.glb *.gltf *.obj", "All files", "*"])
+    files = chosen.result()
+    return files[0] if files else None
+
+
+def scene_and_view(spec: str, settings: Settings) -> tuple[Scene, Settings]:
+    """Load a scene and the view it opens with."""
+    scene = load(spec)
+    return scene, opening(scene, spec, settings)
+
+
+def save_png(pixels: np.ndarray, path: Path | None = None) -> Path:
+    """Save (h, w, 4) 8-bit `pixels` as PNG, whole or not at all, never over a file nobody named."""
+    path = path or _unused_name()
+    write_whole(path, lambda part: Picture.fromarray(pixels[..., :3]).save(part, format="PNG"))
+    return path
+
+
+def _unused_name() -> Path:
+    stamp = datetime.now().strftime("%Y-%m-%d-%H%M%S")
+    for number in range(1000):
+        path = Path.cwd() / f"dofview-{stamp}{f'-{number}' if number else ''}.png"
+        if not path.exists():
+            return path
+    raise OutputError(f"{Path.cwd()}: no unused name for a picture")

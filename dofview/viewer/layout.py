@@ -1,0 +1,58 @@
+"""Where things stand: the picture fills the window, the panels stand beside it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui
+
+from dofview.viewer import panels, viewport
+
+if TYPE_CHECKING:
+    from dofview.viewer.app import App
+
+PANEL_WIDTH_EM = 26.0
+FIXED = (
+    imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_collapse
+    | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_bring_to_front_on_focus
+)  # fmt: skip
+
+
+def draw(app: App) -> None:
+    """Draw everything inside the main viewport's work area."""
+    area = imgui.get_main_viewport()
+    left, top = area.work_pos
+    width, height = area.work_size
+    panel = min(PANEL_WIDTH_EM * imgui.get_font_size(), 0.5 * width) if app.panels_shown else 0.0
+    imgui.set_next_window_pos((left, top))
+    imgui.set_next_window_size((max(width - panel, 1.0), max(height, 1.0)))
+    imgui.push_style_var(imgui.StyleVar_.window_padding, (0.0, 0.0))
+    imgui.begin("picture", None, FIXED | imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_scroll_with_mouse)
+    imgui.pop_style_var()
+    viewport.draw(app)
+    imgui.end()
+    if app.panels_shown:
+        imgui.set_next_window_pos((left + width - panel, top))
+        imgui.set_next_window_size((panel, height))
+        imgui.begin("settings", None, FIXED | imgui.WindowFlags_.no_title_bar)
+        imgui.push_item_width(-9.5 * imgui.get_font_size())
+        _panels(app)
+        imgui.pop_item_width()
+        imgui.end()
+
+
+def _panels(app: App) -> None:
+    opened = imgui.TreeNodeFlags_.default_open
+    if imgui.collapsing_header("Method", opened):
+        app.settings = panels.method_panel(app.settings)
+    if imgui.collapsing_header("Lens", opened):
+        app.settings = panels.lens_panel(app.settings, app.scene.bounds)
+    if imgui.collapsing_header("Picture", opened):
+        app.settings = panels.picture_panel(app.settings)
+    if imgui.collapsing_header("Measurement", opened):
+        app.measuring, app.antialias = panels.measure_panel(app.measurement, app.measuring, app.antialias)
+    if imgui.collapsing_header("Scene"):
+        imgui.text_wrapped(f"{app.scene.name}: {app.scene.triangle_count} triangles")
+        for warning in app.scene.warnings:
+            imgui.bullet()
+            imgui.text_wrapped(warning)

@@ -1,0 +1,89 @@
+"""What stands beside the picture: each panel takes what it shows and returns what the person made of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from imgui_bundle import imgui
+
+from dofview.lens import Lens, Photographic, depth_of_field, focal_px, hyperfocal_distance
+from dofview.methods import METHODS, method
+from dofview.settings import Settings
+from dofview.viewer.measure import Measurement
+from dofview.viewer.widgets import edit
+
+SENSOR_HEIGHT_MM = 24.0
+
+
+def method_panel(settings: Settings) -> Settings:
+    """Choose the method and set its parameters."""
+    for name in METHODS:
+        if imgui.radio_button(f"{method(name).TITLE}##{name}", settings.method == name):
+            settings = settings.with_(method=name)
+        if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+            imgui.set_tooltip(method(name).CITATION)
+    imgui.separator_text("parameters")
+    params = edit(settings.method_params)
+    if params != settings.method_params:
+        settings = settings.with_(params=settings.params.model_copy(update={settings.method: params}))
+    return settings
+
+
+def lens_panel(settings: Settings, scene_bounds: np.ndarray) -> Settings:
+    """Focus and aperture in scene units, and the same in a photographer's terms."""
+    size = float(np.linalg.norm(scene_bounds[1] - scene_bounds[0])) or 1.0
+    distance = max(settings.camera.distance, size * 1e-3)
+    ranges = {
+        "focus_distance": (distance / 50.0, max(distance, size) * 4.0),
+        "radius": (0.0, max(size / 20.0, settings.lens.radius)),
+        "rotation_deg": (0.0, 360.0),
+    }
+    shape = {"polygon": ("blades", "rotation_deg"), "image": ("rotation_deg",)}.get(settings.lens.distribution, ())
+    lens = edit(settings.lens, only=("focus_distance", "radius", "distribution", *shape), ranges=ranges)
+    photo = Photographic.of(lens, settings.camera.vfov_deg, SENSOR_HEIGHT_MM)
+    changed, f_number = imgui.slider_float(
+        "f-number##f_number", min(photo.f_number, 64.0), 0.01, 64.0, "f/%.2f",
+        imgui.SliderFlags_.logarithmic | imgui.SliderFlags_.always_clamp,
+    )  # fmt: skip
+    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        sensor = f"{photo.focal_length_mm:.1f} mm on a sensor {SENSOR_HEIGHT_MM:g} mm high"
+        imgui.set_tooltip(f"Focal length {sensor}; a scene unit is a metre.")
+    if changed:
+        lens = lens.model_copy(update={"radius": photo.model_copy(update={"f_number": f_number}).radius()})
+    _depth_of_field_text(lens, settings)
+    return settings.with_(lens=lens) if lens != settings.lens else settings
+
+
+def _depth_of_field_text(lens: Lens, settings: Settings) -> None:
+    pixels = focal_px(settings.image.size[1], settings.camera.vfov_deg)
+    near, far = depth_of_field(lens, pixels)
+    farthest = "infinity" if math.isinf(far) else f"{far:.4g}"
+    imgui.text_disabled(f"sharp within half a pixel from {near:.4g} to {farthest}")
+    imgui.text_disabled(f"hyperfocal distance {hyperfocal_distance(lens, pixels):.4g}")
+
+
+def picture_panel(settings: Settings) -> Settings:
+    """Resolution and display."""
+    image = edit(settings.image, only=("scale",))
+    display = edit(settings.display, ranges={"exposure_ev": (-6.0, 6.0)})
+    if image != settings.image or display != settings.display:
+        settings = settings.with_(image=image, display=display)
+    return settings
+
+
+def measure_panel(measurement: Measurement, measuring: bool, antialias: bool) -> tuple[bool, bool]:
+    """PSNR against the reference, greyed while the reference cannot support it; returns the two switches."""
+    measuring = imgui.checkbox("compare with the reference##measuring", measuring)[1]
+    antialias = imgui.checkbox("antialiased reference##antialias", antialias)[1]
+    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        imgui.set_tooltip("Methods are not antialiased by themselves: compare with render scale 2.")
+    if measuring:
+        text = measurement.psnr_text()
+        if measurement.trustworthy:
+            imgui.text(text)
+        else:
+            imgui.text_disabled(text)
+        imgui.text_disabled(measurement.reference_text())
+        imgui.progress_bar(measurement.progress, (-1.0, 0.0), "")
+    return measuring, antialias

@@ -1,0 +1,83 @@
+"""Controls made from declarations: one function turns a field of a pydantic model into the control it deserves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from enum import Enum
+from typing import Any, TypeVar
+
+from imgui_bundle import imgui
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from dofview import fields
+
+M = TypeVar("M", bound=BaseModel)
+LOGARITHMIC_FROM = 1000.0
+
+
+def edit(model: M, *, only: tuple[str, ...] = (), ranges: Mapping[str, tuple[float, float]] | None = None) -> M:
+    """Show a control for every field (or `only` some) and return the model as the person left it.
+
+    `ranges` gives sliders a range that suits the scene where the declared one is far wider. Double-click types a value,
+    right-click goes back to the default.
+    """
+    changes: dict[str, Any] = {}
+    for name, info in type(model).model_fields.items():
+        if only and name not in only:
+            continue
+        before = getattr(model, name)
+        after = _control(name, info, before, (ranges or {}).get(name))
+        if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+            imgui.set_tooltip(tooltip(name, info))
+        if imgui.begin_popup_context_item(f"{name}##reset"):
+            if imgui.menu_item_simple(f"Back to {fields.shown(info.default)}"):
+                after = info.default
+            imgui.end_popup()
+        if after != before:
+            changes[name] = after
+    return model.model_validate({**model.model_dump(), **changes}) if changes else model
+
+
+def label(name: str, info: FieldInfo) -> str:
+    """What stands beside the control: the name in words, and the paper's symbol."""
+    symbol = fields.extra(info, "symbol")
+    words = name.replace("_", " ")
+    return f"{words} ({symbol})##{name}" if symbol else f"{words}##{name}"
+
+
+def tooltip(name: str, info: FieldInfo) -> str:
+    """Description, what is accepted, and the default of a field."""
+    lines = [info.description or name.replace("_", " "), f"default {fields.shown(info.default)}"]
+    accepted = fields.accepted(info)
+    return "\n".join([lines[0], f"{accepted}; {lines[1]}" if accepted else lines[1]])
+
+
+def _control(name: str, info: FieldInfo, value: Any, wanted: tuple[float, float] | None) -> Any:
+    text = label(name, info)
+    if isinstance(value, bool):
+        return imgui.checkbox(text, value)[1]
+    if isinstance(value, Enum):
+        members = list(type(value))
+        chosen = imgui.combo(text, members.index(value), [fields.shown(m.value) for m in members])[1]
+        return members[chosen]
+    low, high = wanted or fields.bounds(info)[:2]
+    if isinstance(value, int):
+        return imgui.slider_int(text, value, int(low or 0), int(high or 100), "%d", imgui.SliderFlags_.always_clamp)[1]
+    if isinstance(value, float):
+        return _float_slider(text, value, low, high)
+    imgui.label_text(text, fields.shown(value))
+    return value
+
+
+def _float_slider(text: str, value: float, low: float | None, high: float | None) -> float:
+    low, high = low if low is not None else 0.0, high if high is not None else max(2.0 * abs(value), 1.0)
+    flags = imgui.SliderFlags_.always_clamp
+    spread = high / low if low > 0.0 else (high / 1e-3 if low == 0.0 else 1.0)
+    if spread >= LOGARITHMIC_FROM:
+        flags |= imgui.SliderFlags_.logarithmic
+    decimals = max(0, min(6, 3 - math.floor(math.log10(max(abs(value), 1e-6)))))
+    shown = value if math.isfinite(value) else high
+    changed, after = imgui.slider_float(text, shown, low, high, f"%.{decimals}f", flags)
+    return after if changed else value

@@ -1,0 +1,102 @@
+"""The real window: moderngl-window's glfw window, imgui's own C++ backends, and a loop that sleeps.
+
+`imgui_bundle` is imported before `glfw` so that both use one libglfw.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import time
+
+# isort: off
+from imgui_bundle import imgui
+import glfw
+
+# isort: on
+from moderngl_window.context.glfw import Window
+
+from dofview.errors import GLError
+from dofview.gl.context import REMEDY, REQUIRED, Gpu
+from dofview.scene.model import Scene
+from dofview.settings import Settings
+from dofview.viewer.app import App
+
+SIZE = (1280, 800)
+IDLE_WAIT_S = 1.0
+SETTLE_S = 0.6
+"""After an event the interface is drawn this long: tooltips wait, scroll bars glide."""
+
+
+def run(scene: Scene, settings: Settings, *, size: tuple[int, int] = SIZE, title: str = "dofview") -> None:
+    """Open a window on `scene` and return when it is closed."""
+    window = _create(size, title)
+    handle = window._window
+    gpu = Gpu(window.ctx)
+    _create_interface(handle)
+    app = App(gpu, scene, settings, wake=glfw.post_empty_event)
+    glfw.set_drop_callback(handle, lambda _, paths: app.open(paths[0]))
+    try:
+        _loop(window, app)
+    finally:
+        app.release()
+        gpu.release()
+        imgui.backends.opengl3_shutdown()
+        imgui.backends.glfw_shutdown()
+        imgui.destroy_context()
+        window.destroy()
+
+
+def _create(size: tuple[int, int], title: str) -> Window:
+    if not glfw.init():
+        raise GLError("cannot open a window: no display; use `dofview render` where there is no screen")
+    version = (4, 1)
+    for version in ((4, 1), (REQUIRED // 100, REQUIRED % 100 // 10)):
+        try:
+            return Window(
+                title=title, size=size, gl_version=version, vsync=True, resizable=True, samples=0, exit_key=None,
+            )  # fmt: skip
+        except ValueError:
+            continue
+    raise GLError(f"cannot open a window with OpenGL {version[0]}.{version[1]} core; {REMEDY}")
+
+
+def _create_interface(handle: object) -> None:
+    imgui.create_context()
+    io = imgui.get_io()
+    io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard.value
+    io.set_ini_filename("")
+    scale = max(glfw.get_window_content_scale(handle)[0], 0.5)
+    imgui.style_colors_dark()
+    imgui.get_style().font_scale_dpi = scale
+    imgui.get_style().scale_all_sizes(scale)
+    imgui.backends.glfw_init_for_opengl(ctypes.cast(handle, ctypes.c_void_p).value or 0, True)
+    imgui.backends.opengl3_init("#version 150")
+
+
+def _loop(window: Window, app: App) -> None:
+    awake_until = time.monotonic() + SETTLE_S
+    while not window.is_closing and not app.quitting:
+        if app.busy or time.monotonic() < awake_until:
+            glfw.poll_events()
+        else:
+            before = time.monotonic()
+            glfw.wait_events_timeout(IDLE_WAIT_S)
+            if time.monotonic() - before >= IDLE_WAIT_S and not app.gpu.shaders.reload():
+                continue
+            awake_until = time.monotonic() + SETTLE_S
+        _draw(window, app)
+
+
+def _draw(window: Window, app: App) -> None:
+    imgui.backends.opengl3_new_frame()
+    imgui.backends.glfw_new_frame()
+    imgui.new_frame()
+    app.gui()
+    imgui.render()
+    width, height = glfw.get_framebuffer_size(window._window)
+    ctx = app.gpu.ctx
+    ctx.screen.use()
+    ctx.viewport = (0, 0, width, height)
+    ctx.clear(0.06, 0.06, 0.07)
+    imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
+    glfw.swap_buffers(window._window)
