@@ -42,7 +42,7 @@ class GpuScene:
         self._vertices = gpu.ctx.buffer(vertices.tobytes()) if len(vertices) else None
         self._indices = gpu.ctx.buffer(triangles.tobytes()) if len(triangles) else None
         self._ctx = gpu.ctx
-        self._arrays: dict[int, moderngl.VertexArray] = {}
+        self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
 
     @property
     def local_bounds(self) -> np.ndarray:
@@ -51,13 +51,14 @@ class GpuScene:
 
     def array(self, program: moderngl.Program) -> moderngl.VertexArray:
         """Return the scene's vertex array for `program`, which may use any subset of the attributes."""
-        if program.glo not in self._arrays:
+        # By identity, not by OpenGL's name for it: names are used again after a shader is reloaded.
+        if program not in self._arrays:
             names = [name if name in program else None for name in VERTEX_NAMES]
             widths = VERTEX_FORMAT.split()
             layout = " ".join(w if n else f"{int(w[0]) * 4}x" for w, n in zip(widths, names, strict=True))
             content = [(self._vertices, layout, *[n for n in names if n])]
-            self._arrays[program.glo] = self._ctx.vertex_array(program, content, self._indices, index_element_size=4)
-        return self._arrays[program.glo]
+            self._arrays[program] = self._ctx.vertex_array(program, content, self._indices, index_element_size=4)
+        return self._arrays[program]
 
     def release(self) -> None:
         for array in self._arrays.values():

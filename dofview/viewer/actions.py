@@ -35,6 +35,8 @@ CTRL = int(imgui.Key.mod_ctrl)
 
 ACTIONS: tuple[Action, ...] = (
     Action("Open…", CTRL | int(imgui.Key.o), "Ctrl+O", "Open a glTF or OBJ scene.", lambda a: a.ask_for_file(), "File"),
+    Action("Open path…", CTRL | int(imgui.Key.mod_shift) | int(imgui.Key.o), "Ctrl+Shift+O",
+           "Type the path of a scene, or a demo such as demo:rail.", lambda a: a.ask_for_path(), "File"),
     Action("Save picture", CTRL | int(imgui.Key.s), "Ctrl+S", "Save the picture as PNG, without the interface.",
            lambda a: a.save_picture(), "File"),
     Action("Quit", CTRL | int(imgui.Key.q), "Ctrl+Q", "Close the window.", lambda a: a.quit(), "File"),

@@ -20,6 +20,7 @@ from dofview.scene.model import Scene
 from dofview.settings import ImageSettings, Settings
 from dofview.viewer import files, layout, navigation
 from dofview.viewer.actions import menu_bar, run_keys
+from dofview.viewer.dialogs import path_dialog
 from dofview.viewer.measure import Measurement
 
 REFERENCE_BUDGET_S = 0.03
@@ -36,6 +37,7 @@ class App:
         self.measuring = False
         self.antialias = False
         self.panels_shown = True
+        self.asking_for_path = False
         self.quitting = False
         self.measurement = Measurement()
         self.milliseconds: list[float] = []
@@ -71,6 +73,7 @@ class App:
         if self.panels_shown:
             menu_bar(self)
         layout.draw(self)
+        path_dialog(self)
 
     def update(self) -> None:
         """Render what has changed; the interface calls it once it knows the size of the picture."""
@@ -100,11 +103,14 @@ class App:
 
     def ask_for_file(self) -> None:
         """Let the person choose a scene file."""
-        spec = files.ask_for_scene()
-        if spec is None and not files.has_dialog():
-            self.report("no file dialog here (install zenity or kdialog); drop a file on the window instead")
-        elif spec:
+        if not files.has_dialog():
+            self.asking_for_path = True
+        elif spec := files.ask_for_scene():
             self.open(spec)
+
+    def ask_for_path(self) -> None:
+        """Let the person type the path of a scene, or the name of a demo."""
+        self.asking_for_path = True
 
     def save_picture(self, path: Path | None = None) -> None:
         """Save the picture shown as PNG under `path`, or under a new name in the working folder."""
@@ -134,6 +140,15 @@ class App:
     def quit(self) -> None:
         """Ask the host to close."""
         self.quitting = True
+
+    def reload_shaders(self) -> bool:
+        """Take up shader files that were edited; True when the picture is to be drawn again."""
+        if not self.gpu.shaders.reload():
+            return False
+        self.pipeline.forget()
+        self._rendered = None
+        self.report(self.gpu.shaders.error or "shaders reloaded")
+        return True
 
     def report(self, message: str) -> None:
         """Show one line for a while."""

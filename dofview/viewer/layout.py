@@ -43,10 +43,10 @@ def draw(app: App) -> None:
 
 def _panels(app: App) -> None:
     opened = imgui.TreeNodeFlags_.default_open
-    if imgui.collapsing_header("Method", opened):
-        app.settings = panels.method_panel(app.settings)
     if imgui.collapsing_header("Lens", opened):
         app.settings = panels.lens_panel(app.settings, app.scene.bounds)
+    if imgui.collapsing_header("Method", opened):
+        app.settings = panels.method_panel(app.settings)
     if imgui.collapsing_header("Picture", opened):
         app.settings = panels.picture_panel(app.settings)
     if imgui.collapsing_header("Measurement", opened):

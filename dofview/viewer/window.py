@@ -24,7 +24,9 @@ from dofview.viewer.app import App
 SIZE = (1280, 800)
 IDLE_WAIT_S = 1.0
 SETTLE_S = 0.6
-"""After an event the interface is drawn this long: tooltips wait, scroll bars glide."""
+SETTLE_FRAMES = 8
+"""After an event the interface is drawn for this long and this often: tooltips wait, scroll bars glide, and imgui takes
+a key pressed and released at once over several frames."""
 
 
 def run(scene: Scene, settings: Settings, *, size: tuple[int, int] = SIZE, title: str = "dofview") -> None:
@@ -74,17 +76,18 @@ def _create_interface(handle: object) -> None:
 
 
 def _loop(window: Window, app: App) -> None:
-    awake_until = time.monotonic() + SETTLE_S
+    awake_until, frames_left = time.monotonic() + SETTLE_S, SETTLE_FRAMES
     while not window.is_closing and not app.quitting:
-        if app.busy or time.monotonic() < awake_until:
+        if app.busy or frames_left > 0 or time.monotonic() < awake_until:
             glfw.poll_events()
         else:
             before = time.monotonic()
             glfw.wait_events_timeout(IDLE_WAIT_S)
-            if time.monotonic() - before >= IDLE_WAIT_S and not app.gpu.shaders.reload():
+            if time.monotonic() - before >= IDLE_WAIT_S and not app.reload_shaders():
                 continue
-            awake_until = time.monotonic() + SETTLE_S
+            awake_until, frames_left = time.monotonic() + SETTLE_S, SETTLE_FRAMES
         _draw(window, app)
+        frames_left -= 1
 
 
 def _draw(window: Window, app: App) -> None:

@@ -8,9 +8,10 @@ from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).parents[2]), str(Path(__file__).parents[1])]
 
-from imgui_bundle import imgui  # noqa: E402, I001
+from imgui_bundle import hello_imgui, imgui  # noqa: E402, I001
 from imgui_bundle.immapp import testing  # noqa: E402
 import moderngl  # noqa: E402
+import numpy as np  # noqa: E402
 from scenes import three_planes  # noqa: E402
 
 from dofview.framing import opening  # noqa: E402
@@ -21,17 +22,42 @@ from dofview.viewer.app import App  # noqa: E402
 Context = imgui.test_engine.TestContext
 
 
-def drive(test: Callable[[Context, App], None], size: tuple[int, int] = (560, 480)) -> None:
-    """Show the viewer on a small scene and let `test` use it; an assertion or engine error ends with status 1."""
-    app: list[App] = []
+class Host:
+    """The viewer on a small scene. The engine runs a test in a thread without OpenGL, so pictures are read for it."""
 
-    def gui() -> None:
-        if not app:
+    def __init__(self) -> None:
+        self.app: App | None = None
+        self._wanted = False
+        self._pixels = np.zeros(0)
+
+    def frame(self) -> None:
+        """One frame of the interface."""
+        if self.app is None:
+            settings = Settings(method="pinhole", image=ImageSettings(size=(64, 48)))
             scene = three_planes()
-            settings = opening(scene, "", Settings(method="pinhole", image=ImageSettings(size=(64, 48))))
-            app.append(App(Gpu(moderngl.create_context()), scene, settings))
-        app[0].gui()
-        app[0].gpu.ctx.screen.use()
-        assert app[0].gpu.ctx.error == "GL_NO_ERROR"
+            self.app = App(Gpu(moderngl.create_context()), scene, opening(scene, "", settings))
+        self.app.gui()
+        if self._wanted and self.app.shown is not None:
+            self._pixels, self._wanted = self.app.shown.pixels()[..., :3].astype(float), False
+        self.app.gpu.ctx.screen.use()
+        assert self.app.gpu.ctx.error == "GL_NO_ERROR"
 
-    testing.run(gui, lambda context: test(context, app[0]), window_size=size, fps_idle=0.0)
+    def pixels(self, context: Context) -> np.ndarray:
+        """The picture shown after a few frames, (h, w, 3)."""
+        context.yield_(3)
+        self._wanted = True
+        while self._wanted:
+            context.yield_()
+        return self._pixels
+
+
+def drive(test: Callable[[Context, App, Host], None], size: tuple[int, int] = (560, 480)) -> None:
+    """Show the viewer and let `test` use it; a failed assertion or engine error is raised."""
+    host = Host()
+    params = hello_imgui.RunnerParams()
+    params.callbacks.show_gui = host.frame
+    params.app_window_params.window_geometry.size = size
+    params.imgui_window_params.default_imgui_window_type = hello_imgui.DefaultImGuiWindowType.no_default_window
+    params.fps_idling.enable_idling = False
+    params.ini_disable = True
+    testing.run(test_function=lambda context: test(context, host.app, host), runner_params=params)

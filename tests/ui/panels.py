@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-from host import Context, drive
+from host import Context, Host, drive
 
 from dofview.methods import METHODS
 from dofview.viewer.app import App
 
 
-def use(context: Context, app: App) -> None:
+def use(context: Context, app: App, host: Host) -> None:
     context.yield_(4)
     assert app.shown is not None and app.scene_renders >= 1
     renders = app.scene_renders
     context.yield_(10)
     assert app.scene_renders == renders, "a window in which nothing changes renders nothing"
 
-    before = app.shown.pixels()
+    before = host.pixels(context)
     context.set_ref("settings")
     for name in METHODS:
         context.item_click(f"**/{_title(name)}##{name}")
@@ -32,9 +32,9 @@ def use(context: Context, app: App) -> None:
     assert app.settings.lens.radius > 0.0
 
     context.item_input_value("**/exposure ev##exposure_ev", 2.0)
-    context.yield_(3)
+    brighter = host.pixels(context)
     renders = app.scene_renders
-    assert app.shown.pixels().mean() > before.mean() + 10, "exposure brightens what is shown"
+    assert brighter.mean() > before.mean() + 10, "exposure brightens what is shown"
     context.item_input_value("**/exposure ev##exposure_ev", 0.0)
     context.yield_(3)
     assert app.scene_renders == renders, "exposure renders no scene"
