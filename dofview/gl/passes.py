@@ -56,13 +56,17 @@ def draw(
     gpu: Gpu, shader: str, into: Image | Sequence[Image], *, textures: Textures | None = None,
     blocks: Blocks | None = None, values: Mapping[str, object] | None = None, defines: Defines | None = None,
     blend: tuple | None = None, clear: bool = False, viewport: tuple[int, int, int, int] | None = None,
-    vertex: str = "pass/fullscreen.vert",
+    vertex: str = "pass/fullscreen.vert", geometry: str | None = None,
 ) -> None:  # fmt: skip
     """Run the fragment shader `shader` over every pixel of `into` (one image, or several of one size), or over the
-    part of them that `viewport` (left, bottom, width, height) names; `clear` is of the whole."""
+    part of them that `viewport` (left, bottom, width, height) names; `clear` is of the whole.
+
+    `geometry` names a geometry shader that chooses the layer when `into` are arrays (pass/to_layer.geom).
+    """
     images = (into,) if isinstance(into, Image) else tuple(into)
     blocks = blocks or {}
-    program = gpu.shaders.program(vertex, shader, defines=defines, blocks=block_texts(blocks))
+    stages = (vertex, geometry, shader) if geometry else (vertex, shader)
+    program = gpu.shaders.program(*stages, defines=defines, blocks=block_texts(blocks))
     framebuffer = gpu.targets.framebuffer(images)
     framebuffer.use()
     ctx = gpu.ctx
@@ -79,4 +83,4 @@ def draw(
     program.arrays[0].render(moderngl.TRIANGLES, vertices=3)
     gpu.profile.count("passes")
     width, height = viewport[2:] if viewport else images[0].size
-    gpu.profile.count("fragments", width * height * max(images[0].shape.layers, 1))
+    gpu.profile.count("fragments", width * height)

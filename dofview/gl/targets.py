@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
+from dofview.gl.layered import DepthArray
+
 # moderngl calls normalised bytes "f1"; numpy knows them as bytes.
 _NUMPY = {"f1": "u1"}
 
@@ -71,10 +73,10 @@ class TargetPool:
     def __init__(self, ctx: moderngl.Context):
         self._ctx = ctx
         self._images: dict[str, Image] = {}
-        self._depths: dict[tuple[int, int], moderngl.Renderbuffer] = {}
+        self._depths: dict[tuple[int, int, int], moderngl.Renderbuffer | DepthArray] = {}
         self._framebuffers: dict[tuple, moderngl.Framebuffer] = {}
         self._used: dict[str, int] = {}
-        self._depth_used: dict[tuple[int, int], int] = {}
+        self._depth_used: dict[tuple[int, int, int], int] = {}
         self._clock = 0
         self._resting = ctx.framebuffer([ctx.renderbuffer((1, 1))])
 
@@ -93,13 +95,24 @@ class TargetPool:
         return image
 
     def framebuffer(self, images: Sequence[Image], depth: bool = False) -> moderngl.Framebuffer:
-        """Return the framebuffer with these colour attachments, and a shared depth buffer of their size if asked."""
-        key = (tuple(image.texture.glo for image in images), depth)
+        """Return the framebuffer with these colour attachments, and a shared depth buffer of their size if asked.
+
+        Arrays are attached with all their layers, of which a geometry shader chooses; each layer has its own depth then
+        (GLError where the driver cannot: ask `layered.DepthArray.available` first).
+        """
+        shape = images[0].shape
+        depth_key = (*shape.size, shape.layers) if depth else None
+        key = (tuple(image.texture.glo for image in images), depth_key)
         if key not in self._framebuffers:
-            buffer = self._depth(images[0].size) if depth else None
-            self._framebuffers[key] = self._ctx.framebuffer([image.texture for image in images], buffer)
-        if depth:
-            self._depth_used[images[0].size] = self._clock
+            textures = [image.texture for image in images]
+            if depth_key is None or shape.layers == 0:
+                self._framebuffers[key] = self._ctx.framebuffer(textures, self._depth(depth_key) if depth_key else None)
+            else:
+                buffer = self._depth(depth_key)
+                self._framebuffers[key] = self._ctx.framebuffer(textures)
+                buffer.attach(self._framebuffers[key])
+        if depth_key is not None:
+            self._depth_used[depth_key] = self._clock
         return self._framebuffers[key]
 
     def named(self, prefix: str = "") -> list[Image]:
@@ -111,10 +124,10 @@ class TargetPool:
         self._clock += 1
         for name in [n for n, used in self._used.items() if used < self._clock - keep_frames]:
             self._release(name)
-        for size in [s for s, used in self._depth_used.items() if used < self._clock - keep_frames]:
-            self._drop_framebuffers([key for key, fbo in self._framebuffers.items() if key[1] and fbo.size == size])
-            self._depths.pop(size).release()
-            del self._depth_used[size]
+        for depth in [d for d, used in self._depth_used.items() if used < self._clock - keep_frames]:
+            self._drop_framebuffers([key for key in self._framebuffers if key[1] == depth])
+            self._depths.pop(depth).release()
+            del self._depth_used[depth]
 
     def release(self) -> None:
         """Release everything."""
@@ -122,10 +135,14 @@ class TargetPool:
         self._resting.color_attachments[0].release()
         self._resting.release()
 
-    def _depth(self, size: tuple[int, int]) -> moderngl.Renderbuffer:
-        if size not in self._depths:
-            self._depths[size] = self._ctx.depth_renderbuffer(size)
-        return self._depths[size]
+    def _depth(self, key: tuple[int, int, int]) -> moderngl.Renderbuffer | DepthArray:
+        """The depth buffer for a width, height and number of layers (0: not an array)."""
+        if key not in self._depths:
+            *size, layers = key
+            self._depths[key] = (
+                DepthArray(self._ctx, tuple(size), layers) if layers else self._ctx.depth_renderbuffer(tuple(size))
+            )
+        return self._depths[key]
 
     def _release(self, name: str) -> None:
         image = self._images.pop(name)

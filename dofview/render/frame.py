@@ -29,11 +29,12 @@ class Surfaces(NamedTuple):
 
 
 class DepthRange(NamedTuple):
-    """Extremes of 1/z over an image; `farthest` is 0 where background shows."""
+    """Extremes of 1/z over an image; `farthest` is 0 where background shows, `farthest_surface` only without any."""
 
     nearest: float
     farthest: float
     empty: bool
+    farthest_surface: float
 
 
 class LensBlock(BaseModel):
@@ -117,8 +118,8 @@ class Frame:
             least, greatest, empty, _ = reduce_blocks(
                 self.gpu, self.pinhole().inverse_depth, "render/depth_range.frag", "depth range/"
             )
-            farthest = 0.0 if empty or greatest == 0.0 else float(least)
-            self.cache.values[key] = DepthRange(float(greatest), farthest, bool(empty))
+            surface = 0.0 if greatest == 0.0 else float(least)
+            self.cache.values[key] = DepthRange(float(greatest), 0.0 if empty else surface, bool(empty), surface)
         return self.cache.values[key]  # type: ignore[return-value]
 
     def coc_range(self) -> tuple[float, float]:
