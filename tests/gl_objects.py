@@ -8,7 +8,7 @@ import sys
 import moderngl
 
 KINDS = ("Texture", "Buffer", "Renderbuffer", "Framebuffer", "VertexArray", "Program", "Sampler", "Query")
-HIGHEST_NAME = 4096
+HIGHEST_NAME = 32768
 
 
 def live_objects(ctx: moderngl.Context) -> dict[str, int] | None:
