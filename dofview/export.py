@@ -109,7 +109,9 @@ def _target(path: Path) -> Path:
             raise OutputError(f"cannot write {path}: it is read-only")
         if not target.parent.is_dir():
             raise OutputError(f"cannot write {path}: there is no folder {target.parent}")
-    except (OSError, ValueError, RuntimeError) as error:
+    except OSError as error:
+        raise _failure(path, error) from error
+    except (ValueError, RuntimeError) as error:
         raise OutputError(f"cannot write {str(path)!r}: {error}") from error
     return target
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Group, Parameter
@@ -33,6 +34,7 @@ NAMES = {
     "guard_px": ("--guard",),
 }
 """Flags of lens and image that are not named as their field."""
+METAVARS = {int: "INT", float: "NUMBER", Path: "FILE"}
 SIZE_HELP = f"Width and height, as 1024x768 [sides from 1 to {LARGEST_SIDE} px]."
 
 
@@ -55,21 +57,18 @@ def of_model(
     """One keyword parameter a field, called title__field; its value is None when the flag is not given."""
     found = []
     for name, field in model.model_fields.items():
-        kind = fields.kind(field) or str
+        kind = fields.kind(field)
         notes = [fields.accepted(field), f"default {fields.shown(field.default)}" if defaults else ""]
-        text = f"{field.description} [{'; '.join(filter(None, notes))}]"
-        if name == "size":
-            kind, text = str, SIZE_HELP
-        # A switch needs no value; everything else is taken as it was typed.
-        reading: dict[str, Any] = {} if kind is bool else {"converter": _as_typed, "n_tokens": 1}
         how = Parameter(
-            name=tuple((names or {}).get(name, (fields.flag(name),))), help=text, group=group, show_default=False,
-            allow_leading_hyphen=True, **reading,
+            name=tuple((names or {}).get(name, (fields.flag(name),))),
+            help=SIZE_HELP if name == "size" else f"{field.description} [{'; '.join(filter(None, notes))}]",
+            metavar=None if kind is bool else "WxH" if name == "size" else METAVARS.get(kind, "CHOICE"),
+            group=group, show_default=False,
         )  # fmt: skip
+        # Text as it was typed, except for a switch, which is there or not.
+        typed = Annotated[(bool if kind is bool else str) | None, how]
         found.append(
-            inspect.Parameter(
-                f"{title}__{name}", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[kind | None, how]
-            )
+            inspect.Parameter(f"{title}__{name}", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=typed)
         )
     return found
 
@@ -121,7 +120,3 @@ def joined_switches(tokens: Sequence[str], chosen: str | None) -> list[str]:
 def owners(flag: str) -> list[str]:
     """The methods that have a parameter of this flag."""
     return [name for name in METHODS if flag in map(fields.flag, method(name).Params.model_fields)]
-
-
-def _as_typed(kind: object, tokens: Sequence[Any]) -> str:
-    return tokens[0].value
