@@ -150,6 +150,8 @@ def _table(*columns: str) -> Table:
 def _short(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{key}: {_short(item)}" for key, item in value.items()) or "–"
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return f"{len(value)}: " + _short([item.get("name") or "unnamed" for item in value])
     if isinstance(value, list):
         more = f" … {len(value) - 8} more" if len(value) > 8 else ""
         return ", ".join(_short(item) for item in value[:8]) + more if value else "–"

@@ -71,10 +71,11 @@ class Folder:
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or "not a usable path"
             raise ModelError(f"{shown} cannot be opened: {reason.lower()}") from error
+        status = os.fstat(handle)
+        if not stat.S_ISREG(status.st_mode):
+            os.close(handle)
+            raise ModelError(f"{shown} is not a regular file")
         with os.fdopen(handle, "rb") as file:
-            status = os.fstat(file.fileno())
-            if not stat.S_ISREG(status.st_mode):
-                raise ModelError(f"{shown} is not a regular file")
             self.account.charge_bytes(status.st_size)
             self._read[path] = (status.st_size, status.st_mtime_ns)
             try:
