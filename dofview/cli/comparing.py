@@ -63,7 +63,7 @@ def compare_into(
     size = "x".join(map(str, settings.image.size))
     console = Console()
     console.print(_table(rows))
-    console.print(f"{spec} at {size}, reference of {comparing.views} views, {renderer}; pictures in {out}/")
+    print(f"{spec} at {size}, reference of {comparing.views} views, {renderer}; pictures in {out}/")
 
 
 def _rows(
@@ -116,10 +116,10 @@ def _table(rows: Sequence[Row]) -> Table:
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
-    for column in ("method", "PSNR dB", "SSIM", "ms", "picture"):
-        table.add_column(column, justify="left" if column in ("method", "picture") else "right", no_wrap=True)
+    for column in ("method", "PSNR dB", "SSIM", "ms"):
+        table.add_column(column, justify="left" if column == "method" else "right", no_wrap=True)
     for row in rows:
         psnr = "reference" if row.ssim is None else "equal" if row.psnr is None else f"{row.psnr:.2f}"
         ssim = "" if row.ssim is None else f"{row.ssim:.4f}"
-        table.add_row(row.method, psnr, ssim, f"{row.ms:.1f}", row.picture)
+        table.add_row(row.method, psnr, ssim, f"{row.ms:.1f}")
     return table
