@@ -3,7 +3,9 @@
 # make docs   write the parameter tables of docs/methods anew
 # make lint   ruff and mypy
 
-PYTHON ?= $(firstword $(shell command -v python3.13 python3.12 python3.11 python3 python 2>/dev/null))
+# The first Python on the path that runs and is new enough.
+PYTHON ?= $(shell for name in python3 python python3.11 python3.12 python3.13 python3.14; do \
+	$$name -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$name && break; done)
 VENV := .venv
 BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
@@ -45,8 +47,7 @@ clean:
 	@rm -rf $(VENV) build dist out
 
 $(VENV)/packages: pyproject.toml
-	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
-	{ echo "dofview needs Python 3.11 or newer: make PYTHON=/path/to/python3.11 $(MAKECMDGOALS)"; exit 1; }
+	@[ -n "$(PYTHON)" ] || { echo "dofview needs Python 3.11 or newer: run make with PYTHON=/path/to/python3.11"; exit 1; }
 	@"$(PYTHON)" -c 'import ensurepip' 2>/dev/null || { $(call apt,python3-venv); }
 	@echo "setting up $(VENV)"
 	@"$(PYTHON)" -m venv $(VENV)
