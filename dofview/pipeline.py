@@ -16,13 +16,13 @@ from dofview.gl.passes import draw
 from dofview.gl.targets import Image
 from dofview.methods import method
 from dofview.render.compare import psnr
-from dofview.render.frame import Frame, FrameCache, guard_band
+from dofview.render.frame import Frame, FrameCache
+from dofview.render.guard import guard_band
 from dofview.render.reference import Quality, Reference
 from dofview.render.upload import GpuScene
 from dofview.scene.model import Scene
 from dofview.settings import Settings
 
-MOST_GUARD_PX = 128
 MAX_CANVAS_PIXELS = 1 << 27
 
 
@@ -103,7 +103,7 @@ class Pipeline:
         width = 0
         if guard:
             width = image.guard_px if image.guard_px is not None else guard_band(
-                self.scene, settings.camera, settings.lens, size, MOST_GUARD_PX
+                self.gpu, self.scene, settings.camera, settings.lens, size, self._cache
             )  # fmt: skip
         self._check_size((size[0] + 2 * width, size[1] + 2 * width))
         return Frame(

@@ -6,7 +6,6 @@ background), not on the lens, so moving the focus or switching methods draws no 
 
 from __future__ import annotations
 
-import math
 from contextlib import nullcontext
 from typing import NamedTuple
 
@@ -16,7 +15,7 @@ from dofview.gl.context import Gpu
 from dofview.gl.filters import reduce_blocks
 from dofview.gl.targets import Image
 from dofview.lens import CocLaw, Lens, focal_px
-from dofview.render.raster import LightsBlock, Projection, depth_range, draw_scene, projection
+from dofview.render.raster import LightsBlock, Projection, draw_scene, projection
 from dofview.render.upload import GpuScene
 from dofview.scene.camera import Camera
 
@@ -47,12 +46,23 @@ class LensBlock(BaseModel):
     sigma: float
 
 
+class Recent(dict):
+    """A dictionary that forgets its oldest entries, so that a camera on the move leaves nothing behind."""
+
+    MOST = 64
+
+    def __setitem__(self, key: object, value: object) -> None:
+        super().__setitem__(key, value)
+        while len(self) > self.MOST:
+            del self[next(iter(self))]
+
+
 class FrameCache:
-    """Images that outlive a frame, each with the key it was rendered for."""
+    """Images that outlive a frame, each with the key it was rendered for, and figures that were read back."""
 
     def __init__(self) -> None:
         self._held: dict[str, tuple[object, Image]] = {}
-        self.values: dict[object, object] = {}
+        self.values = Recent()
 
     def holds(self, key: object, image: Image) -> bool:
         """Whether `image` still is what `key` asks for; if not, the caller renders it now."""
@@ -145,14 +155,3 @@ class Frame:
         if reject:
             self.cache.values[(self.geometry_key, color.name)] = passed.samples > 0
         return Surfaces(color, inverse_depth)
-
-
-def guard_band(scene: GpuScene, camera: Camera, lens: Lens, size: tuple[int, int], most_px: int) -> int:
-    """Pixels around the picture whose blur reaches into it: the largest CoC radius in the scene, up to `most_px`,
-    rounded up to 8 so that a small change of the lens does not draw the scene anew."""
-    if not scene.draws or lens.radius == 0.0:
-        return 0
-    near, far = depth_range(scene, camera)
-    law = lens.coc(focal_px(size[1], camera.vfov_deg))
-    largest = max(abs(float(law.radius_px(1.0 / near))), abs(float(law.radius_px(1.0 / far))))
-    return min(math.ceil(min(largest, most_px) / 8) * 8, most_px)
