@@ -47,9 +47,14 @@ class LensBlock(BaseModel):
 
 
 class Recent(dict):
-    """A dictionary that forgets its oldest entries, so that a camera on the move leaves nothing behind."""
+    """A dictionary that forgets what was not used lately, so that a camera on the move leaves nothing behind."""
 
     MOST = 64
+
+    def __getitem__(self, key: object) -> object:
+        value = super().pop(key)
+        super().__setitem__(key, value)
+        return value
 
     def __setitem__(self, key: object, value: object) -> None:
         super().__setitem__(key, value)
