@@ -12,7 +12,7 @@ from enum import StrEnum
 
 from pydantic import Field
 
-from dofview.gl.pyramids import Atlas, most_levels
+from dofview.gl.pyramids import Atlas, level_size, most_levels
 from dofview.gl.targets import Image
 from dofview.lens import Distribution
 from dofview.methods.method import Params as BaseParams
@@ -43,7 +43,7 @@ class Params(BaseParams):
         description="Filters and blur calibrated by their measured response, or as printed in the paper.",
     )
     delta: float = Field(
-        default=0.5, ge=0.0, le=8.0,
+        default=0.4, ge=0.0, le=8.0,
         description="How much sharper, in px of σ, a neighbour of a blurred background pixel may be and still mix in.",
         json_schema_extra={"unit": "px", "symbol": "δ"},
     )  # fmt: skip
@@ -93,22 +93,23 @@ def render(frame: Frame, params: Params) -> Image:
         )  # fmt: skip
 
     # 4. Without it the blurred foreground would stop at its silhouette as if cut out.
-    blur: dict[str, Image] = {"inverse_depth": surfaces.inverse_depth}
+    foreground: dict[str, Image] = {}
     if params.smooth_foreground and (nearest < 0.0 or not params.skip):
-        smoothed = recipe.image("smoothed DoB")
+        don = recipe.image("DoN", level_size(frame.size, 1), components=1, linear=True)
         recipe.draw(
-            "smooth.frag", smoothed, values={**atlas.values(), "top": top}, defines=defines,
+            "neighbours.frag", don, values={**atlas.values(), "top": top}, defines=defines,
             even_levels=images[0][1], odd_levels=images[1][1],
         )  # fmt: skip
-        blur, defines = {"smoothed": smoothed}, {**defines, "SMOOTHED": 1}
+        foreground = {"don": don, "even_zbn": images[0][1], "odd_zbn": images[1][1]}
+        defines["SMOOTHED"] = 1
     else:
         frame.gpu.profile.count("mipmap smoothings skipped")
 
     # 5. Between the two levels that give each pixel its blur.
     result = recipe.image("result")
     recipe.draw(
-        "blend.frag", result, blocks=blocks, values=atlas.values(), defines=defines, even_levels=images[0][0],
-        odd_levels=images[1][0], **blur,
+        "blend.frag", result, blocks=blocks, values=atlas.values(), defines=defines,
+        inverse_depth=surfaces.inverse_depth, even_levels=images[0][0], odd_levels=images[1][0], **foreground,
     )  # fmt: skip
     return result
 

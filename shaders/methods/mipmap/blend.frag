@@ -5,10 +5,13 @@
 #include "methods/mipmap/keep.glsl"
 #include "methods/mipmap/ring.glsl"
 
-#ifdef SMOOTHED
-uniform sampler2D smoothed;
-#else
 uniform sampler2D inverse_depth;
+uniform sampler2D even_levels;
+uniform sampler2D odd_levels;
+#ifdef SMOOTHED
+uniform sampler2D don;
+uniform sampler2D even_zbn;
+uniform sampler2D odd_zbn;
 #endif
 
 out vec4 color;
@@ -31,14 +34,23 @@ float ring_variance(float d)
     return TAP * (2.0 * (d * d + spread.x) + 4.0 * (0.5 * d * d + spread.y));
 }
 
+#ifdef SMOOTHED
+// DoB where blurred foreground is near (eq 11, figure 8b): read from a coarse level of B, so that blur fades out across
+// a silhouette instead of stopping there.
+float smoothed_sigma(vec2 position)
+{
+    float n = paper_level(textureLod(don, 0.5 * position / vec2(textureSize(don, 0)), 0.0).r);
+    int lower = min(int(n), LAST_LEVEL - 1);
+    return between_levels(even_zbn, odd_zbn, lower, n - float(lower), position).y;
+}
+#endif
+
 void main()
 {
     vec2 position = gl_FragCoord.xy;
-#ifdef SMOOTHED
-    vec2 blur = texelFetch(smoothed, ivec2(position), 0).xy;
-    float coc = blur.x, sigma = blur.y;
-#else
     float coc = coc_radius(texelFetch(inverse_depth, ivec2(position), 0).r), sigma = lens.sigma * abs(coc);
+#ifdef SMOOTHED
+    sigma = smoothed_sigma(position);
 #endif
 
 #ifdef PAPER
@@ -58,14 +70,14 @@ void main()
     float share = lower == 0 && ring > rest ? variance / ring_variance(reach) : 1.0;
 #endif
 
-    vec4 center = between_levels(lower, mixing, position);
+    vec4 center = between_levels(even_levels, odd_levels, lower, mixing, position);
     float weight = 1.0 - (1.0 - CENTER) * share;
 #ifndef PAPER
     weight *= max(keep(center.a, sigma, coc), 1e-3);
 #endif
     vec4 total = vec4(center.rgb, 1.0) * weight;
     for (int i = 0; i < 8; ++i) {
-        vec4 tap = between_levels(lower, mixing, position + RING[i] * reach);
+        vec4 tap = between_levels(even_levels, odd_levels, lower, mixing, position + RING[i] * reach);
         weight = TAP * share;
 #ifndef PAPER
         weight *= keep(tap.a, sigma, coc);

@@ -10,7 +10,7 @@ float keep(float sigma_q, float sigma_p, float coc_p)
     return sharper > 0.0 && coc_p > 0.0 ? 0.0 : 1.0;
 #else
     // A step would pop when a slider moves: fade out over another delta, and in over the first pixel behind the focus.
-    float cut = clamp(sharper / max(params.delta + 0.1 * sigma_p, 1e-3), 0.0, 1.0);
+    float cut = clamp(sharper / max(params.delta + 0.25 * sigma_p, 1e-3), 0.0, 1.0);
     return 1.0 - cut * clamp(coc_p, 0.0, 1.0);
 #endif
 #else

@@ -8,11 +8,8 @@ const vec2 RING[8] = vec2[8](
     vec2(1.0, 0.0), vec2(DIAGONAL, DIAGONAL), vec2(0.0, 1.0), vec2(-DIAGONAL, DIAGONAL),
     vec2(-1.0, 0.0), vec2(-DIAGONAL, -DIAGONAL), vec2(0.0, -1.0), vec2(DIAGONAL, -DIAGONAL));
 
-uniform sampler2D even_levels;
-uniform sampler2D odd_levels;
-
-// Value between `lower` (share 0) and the level above it (share 1).
-vec4 between_levels(int lower, float share, vec2 position)
+// Value of a pyramid at `position` between level `lower` (share 0) and the next (share 1).
+vec4 between_levels(sampler2D even_levels, sampler2D odd_levels, int lower, float share, vec2 position)
 {
     bool swap = (lower & 1) == 1;
     vec4 even = atlas_sample(even_levels, swap ? lower + 1 : lower, position);
