@@ -71,18 +71,19 @@ class Folder:
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or "not a usable path"
             raise ModelError(f"{shown} cannot be opened: {reason.lower()}") from error
-        status = os.fstat(handle)
-        if not stat.S_ISREG(status.st_mode):
-            os.close(handle)
-            raise ModelError(f"{shown} is not a regular file")
-        with os.fdopen(handle, "rb") as file:
+        try:
+            status = os.fstat(handle)
+            if not stat.S_ISREG(status.st_mode):
+                raise ModelError(f"{shown} is not a regular file")
             self.account.charge_bytes(status.st_size)
             self._read[path] = (status.st_size, status.st_mtime_ns)
-            try:
-                # One byte more than announced is enough to see that the file is growing; it is not read without end.
+            with os.fdopen(handle, "rb", closefd=False) as file:
+                # One byte more than announced shows that a file is growing; it is not read without end.
                 return file.read(status.st_size + 1)
-            except OSError as error:
-                raise ModelError(f"{shown} cannot be read: {(error.strerror or 'error').lower()}") from error
+        except OSError as error:
+            raise ModelError(f"{shown} cannot be read: {(error.strerror or 'error').lower()}") from error
+        finally:
+            os.close(handle)
 
     def _decode_data_uri(self, uri: str) -> bytes:
         header, comma, payload = uri.partition(",")

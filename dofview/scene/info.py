@@ -19,8 +19,8 @@ MOST_TURNED = 20_000_000  # vertices, some seconds
 def describe(scene: Scene) -> dict[str, Any]:
     """Facts of a scene, ready for JSON: every number finite, every text printable.
 
-    `triangles` counts each mesh of the file once, as the Khronos glTF validator does; `triangles_drawn` and `draws` count
-    what the scene shows, each instance again.
+    `triangles` counts each mesh of the file once, as the Khronos glTF validator does; `triangles_drawn` and `draws`
+    count what the scene shows, each instance again.
     """
     drawn = scene.triangle_count
     low, high = exact_bounds(scene)

@@ -31,7 +31,7 @@ def smooth_normals(positions: np.ndarray, triangles: np.ndarray, keys: np.ndarra
     normal (default: those with the same position index); then the result has one row for each key.
     """
     keys = triangles if keys is None else keys
-    count = max(len(positions) if keys is triangles else 0, int(keys.max(initial=-1)) + 1)
+    count = len(positions) if keys is triangles else int(keys.max()) + 1 if keys.size else 0
     sums = np.zeros((count, 3))
     batch = max(BATCH, len(triangles) // 16)  # each batch costs a pass over all sums
     for start in range(0, len(triangles), batch):

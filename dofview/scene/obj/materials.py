@@ -7,6 +7,7 @@ left out with a warning, as in glTF.
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
@@ -50,7 +51,7 @@ class Materials:
     def _library_names(self, statement: str) -> list[str]:
         """The whole statement when there is such a file, else each part that ends in .mtl: names may hold spaces."""
         try:
-            whole = self.folder.find(statement).is_file()
+            whole = os.path.isfile(self.folder.find(statement))
         except ModelError:
             whole = False
         return [statement] if whole else re.findall(r"(?i)\S.*?\.mtl(?=\s|$)", statement) or [statement]
@@ -167,7 +168,7 @@ class Materials:
             return None
         try:
             path = self.folder.find(reference.name, start)
-            if not path.exists():  # many exporters write names relative to the .obj instead
+            if not os.path.exists(path):  # many exporters write names relative to the .obj instead
                 path = self.folder.find(reference.name)
             if path not in self._pictures:
                 self._pictures[path] = None
