@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,9 +14,11 @@ from dofview.errors import ModelError
 from dofview.scene import demo
 from dofview.scene.camera import Camera
 from dofview.scene.demo import shapes, texels
+from dofview.scene.load import load
 from dofview.scene.model import Scene
 
 NAMES = tuple(demo.DEMOS)
+ASSETS = Path(__file__).resolve().parents[1] / "assets"
 GUARD = 1.08  # the picture and 4 % of its size beyond every edge, which is what the widest blur brings in
 
 
@@ -187,3 +191,59 @@ def test_noise_is_periodic_and_one_over_f():
     radius = np.hypot(np.fft.fftfreq(512)[:, None], np.fft.rfftfreq(512)[None, :]) * 512
     low, high = (power[(radius > r) & (radius < 2 * r)].mean() for r in (8, 64))
     assert low / high == pytest.approx(64, rel=0.3)  # power falls as 1/f², over three octaves
+
+
+@cache
+def scene_files():
+    spec = importlib.util.spec_from_file_location("make_scenes", ASSETS / "make_scenes.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def same_surface(kept: Scene, made: Scene, tolerance: float) -> None:
+    """Corner by corner, whatever the order of vertices: positions, normals, texture coordinates, colours."""
+    assert kept.warnings == () and len(kept.primitives) == len(made.primitives)
+    for instance, b in zip(kept.instances, made.primitives, strict=True):
+        a = kept.primitives[instance.primitive]
+        corners, others = a.triangles.ravel(), b.triangles.ravel()
+        placed = a.positions[corners] @ instance.matrix[:3, :3].T + instance.matrix[:3, 3]
+        assert np.allclose(placed, b.positions[others], atol=tolerance)
+        assert np.allclose(a.normals[corners], b.normals[others], atol=10 * tolerance)
+        assert np.allclose(a.texcoords[0][corners], b.texcoords[0][others], atol=tolerance)
+        if a.colors is not None:
+            assert np.allclose(a.colors[corners], b.colors[others], atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["foreground", "background", "rail", "highlights"])
+def test_kept_glb_is_what_the_script_makes_and_reads_back_whole(name):
+    path = ASSETS / "scenes" / f"{name}.glb"
+    assert path.stat().st_size < 1_000_000
+    kept, made = load(path), demo.build(name + scene_files().GLB_TRIANGLES)
+    same_surface(kept, made, 1e-5)
+    for a, b in zip(kept.materials, made.materials, strict=True):
+        assert (a.name, a.unlit, a.metallic, a.roughness) == (b.name, b.unlit, b.metallic, b.roughness)
+        assert np.allclose(a.emissive, b.emissive, rtol=1e-6) and np.allclose(a.base_color, b.base_color)
+        if b.base_color_texture:
+            drawn = a.base_color_texture.picture.pixels.astype(float)[..., :3]
+            full = b.base_color_texture.picture.pixels.astype(float)[..., :3]
+            half = full.reshape(drawn.shape[0], 2, drawn.shape[1], 2, 3).mean(axis=(1, 3))
+            assert np.abs(drawn - half).mean() < 8, a.name  # of 255: 64 colours
+    assert np.allclose(kept.cameras[0].matrix, made.cameras[0].matrix, atol=1e-9)
+    assert kept.cameras[0].vfov_deg == pytest.approx(40)
+
+
+def test_kept_obj_is_what_the_script_makes_and_reads_back_whole():
+    files = scene_files()
+    kept, made = load(ASSETS / "scenes" / "chess.obj"), files.chess()
+    assert sum(path.stat().st_size for path in (ASSETS / "scenes").glob("chess*")) < 300_000
+    same_surface(kept, made, 2e-4)
+    for a, b in zip(kept.materials, made.materials, strict=True):
+        assert (a.name, a.roughness, a.metallic) == (b.name, b.roughness, 0.0)
+        assert a.base_color_texture is not None
+
+
+@pytest.mark.parametrize("name", [*NAMES, "chess"])
+def test_kept_view_files_are_the_views(name):
+    kept = json.loads((ASSETS / "scenes" / f"{name}.json").read_text())
+    assert kept == (scene_files().CHESS_VIEW if name == "chess" else demo.view(name))

@@ -74,7 +74,7 @@ def _curtain() -> list[Part]:
         painted("teal", paint.stripes(32, ("14616b", "e9e2cc", "2b8f8b", "0f3d4c"), 8), 0.3),
         painted("ochre", paint.checker(33, ("e0a030", "6a3413"), 8), 0.4),
         painted("ivory", paint.marble(34, ("5b4636", "d9cbb0", "f3ead6", "fff9ec")), 0.25),
-        painted("plum", paint.terrazzo(35, ("4a2340", "5d2c4f"), ("f0c9a0", "e07a5f", "f4efe2", "9cc5c9")), 0.3),
+        painted("plum", paint.terrazzo(35, ("4a2340", "5d2c4f"), ("f0c9a0", "e07a5f", "f4efe2", "9cc5c9"), 256), 0.3),
     ]
     cane = painted("cane", paint.stripes(36, ("b98a45", "c99b57", "a8783a", "6b4520"), 12), 0.6)
     shapes: list[list[Shape]] = [[] for _ in beads]

@@ -46,7 +46,7 @@ def parts() -> list[Part]:
     front = sheet((-3, -1.2, 0), (6, 0, 0), (0, 1.2, 0), (16, 4), 1.4)
     covered = near((-0.3, 0.14, -0.36, 0.28), (0.5, 0.05, -0.38, 0.22), (0.75, 0.05, -0.38, 0.22))
     return [
-        Part(top + front, sill, covered), *_street(), *_lantern(), *_lamps(), *(p for c in CARS for p in _car(*c)),
+        Part(top + front, sill, covered), *_street(), *_lantern(), *_lamps(), *_cars(),
     ]  # fmt: skip
 
 
@@ -125,13 +125,15 @@ def _lamps() -> list[Part]:
     return [Part(sum(wires, ()), wire), *(Part(sum(s, ()), lamp(n, LIGHTS[n])) for n, s in bulbs.items())]
 
 
-def _car(x: float, z: float, turn: float, color: str) -> list[Part]:
-    paint_job = painted("car", paint.stripes(152, ("3a1014", "4c171a", "28384a", "1c2a38"), 4), 0.3, tint=0.5)
+def _cars() -> list[Part]:
+    metal = painted("car", paint.stripes(152, ("3a1014", "4c171a", "28384a", "1c2a38"), 4), 0.3, tint=0.5)
     tyre = painted("tyre", paint.plaster(153, ("101114", "1c1d20")), 0.9)
-    body = place(box((1.3, 0.5, 1.9), 0.14, 5, 1.0), (0, 0.42, 0)) + place(
-        box((1.1, 0.42, 1.0), 0.16, 5, 1.0), (0, 0.78, -0.15)
-    )
+    cabin = place(box((1.1, 0.42, 1.0), 0.16, 5, 1.0), (0, 0.78, -0.15))
+    body = place(box((1.3, 0.5, 1.9), 0.14, 5, 1.0), (0, 0.42, 0)) + cabin
     wheel = lathe(((0.0, 0.0), (0.2, 0.0), (0.22, 0.05), (0.2, 0.14), (0.0, 0.14)), (14, 5))
     wheels = sum((place(wheel, (0.52 * s, 0.22, 0.58 * e), (0, 0, -90 * s)) for s in (-1, 1) for e in (-1, 1)), ())
-    to_street = ((x, STREET, z), (0, turn, 0))
-    return [Part(place(body, *to_street), paint_job, standing(STREET, 0.3)), Part(place(wheels, *to_street), tyre)]
+
+    def parked(shape: Shape) -> Shape:
+        return sum((place(shape, (x, STREET, z), (0, turn, 0)) for x, z, turn, _ in CARS), ())
+
+    return [Part(parked(body), metal, standing(STREET, 0.3)), Part(parked(wheels), tyre)]

@@ -58,20 +58,18 @@ def wood(seed: int, codes: Sequence[str], planks: int = 4, size: int = SIZE) -> 
     return picture("wood", mix(color, rgb(codes[0]) * 0.35, joint * (0.9 if planks > 1 else 0.0)))
 
 
-def terrazzo(seed: int, ground: Sequence[str], chips: Sequence[str]) -> Picture:
+def terrazzo(seed: int, ground: Sequence[str], chips: Sequence[str], size: int = SIZE) -> Picture:
     """Polished stone chips of three sizes in a speckled ground."""
-    color = ramp(noise(seed, 0.6), ground)
+    color = ramp(noise(seed, 0.6, 1.0, size), ground)
+    grain = 0.85 + 0.3 * noise(seed + 9, 0.8, 1.0, size)
     for level, (count, keep) in enumerate(((34, 0.45), (15, 0.5), (7, 0.4))):
-        owner, gap = cells(seed + 3 * level + 1, count)
+        owner, gap = cells(seed + 3 * level + 1, count, size)
         rng = np.random.default_rng(seed + level)
         chosen = rng.random(count * count) < keep
         palette = np.array([rgb(code) for code in chips])[rng.integers(0, len(chips), count * count)]
         width = (0.1 + 0.16 * rng.random(count * count)) / count
-        color = mix(
-            color,
-            palette[owner] * (0.85 + 0.3 * noise(seed + 9, 0.8))[..., None],
-            inside(width[owner] - gap) * chosen[owner],
-        )
+        cover = inside(width[owner] - gap, 1 / size) * chosen[owner]
+        color = mix(color, palette[owner] * grain[..., None], cover)
     return picture("terrazzo", color)
 
 

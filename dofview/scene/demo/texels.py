@@ -76,8 +76,7 @@ def cells(seed: int, count: int, size: int = SIZE) -> tuple[np.ndarray, np.ndarr
 
 
 def picture(name: str, color: np.ndarray) -> Picture:
-    """Store sRGB colours (h, w, 3) in 0..1 as an opaque picture, in 64 steps a channel so that files stay small."""
-    steps = np.round(np.clip(color, 0.0, 1.0) * 63).astype(np.uint8)
+    """Store sRGB colours (h, w, 3) in 0..1 as an opaque picture of 8 bit."""
     pixels = np.full((*color.shape[:2], 4), 255, dtype=np.uint8)
-    pixels[..., :3] = (steps << 2) | (steps >> 4)
+    pixels[..., :3] = np.round(np.clip(color, 0.0, 1.0) * 255)
     return Picture(name, pixels)
