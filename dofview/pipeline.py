@@ -16,6 +16,8 @@ from dofview.gl.passes import draw
 from dofview.gl.targets import Image
 from dofview.methods import method
 from dofview.render.compare import psnr
+from dofview.render.environment import Environment, Lighting
+from dofview.render.environment import load as load_environment
 from dofview.render.frame import Frame, FrameCache
 from dofview.render.guard import guard_band
 from dofview.render.reference import Quality, Reference
@@ -48,6 +50,8 @@ class Pipeline:
         self._cache = FrameCache()
         self._reference: Reference | None = None
         self._reference_key: object = None
+        self._environment: Environment | None = None
+        self._environment_stamp = Lighting().stamp()
 
     def load(self, scene: Scene) -> None:
         """Show another scene. The former one stays when this one cannot be uploaded."""
@@ -79,7 +83,7 @@ class Pipeline:
         """Return the progressive reference for `settings`, begun anew when anything it depends on has changed."""
         image = settings.image
         key = (id(self.scene), settings.camera, settings.lens, image.size, image.scale, settings.background_linear,
-               antialias)  # fmt: skip
+               settings.light.stamp(), antialias)  # fmt: skip
         if key != self._reference_key or self._reference is None:
             self._reference = Reference(self.frame(settings, guard=False), antialias=antialias)
             self._reference_key = key
@@ -108,13 +112,26 @@ class Pipeline:
         self._check_size((size[0] + 2 * width, size[1] + 2 * width))
         return Frame(
             self.gpu, self.scene, settings.camera, settings.lens, size, guard=width,
-            background=settings.background_linear, cache=self._cache,
+            background=settings.background_linear, environment=self._surroundings(settings.light), cache=self._cache,
         )  # fmt: skip
 
     def release(self) -> None:
         """Release the scene's buffers; images belong to the context."""
         self.scene.release()
         self.forget()
+        if self._environment is not None:
+            self._environment.release()
+            self._environment, self._environment_stamp = None, Lighting().stamp()
+
+    def _surroundings(self, lighting: Lighting) -> Environment | None:
+        """The environment of `lighting`, loaded when it, or the content of its file, is another than last time."""
+        stamp = lighting.stamp()
+        if stamp != self._environment_stamp:
+            fresh = load_environment(self.gpu, lighting)
+            if self._environment is not None:
+                self._environment.release()
+            self._environment, self._environment_stamp = fresh, stamp
+        return self._environment
 
     def _resolve(self, canvas: Image, frame: Frame, size: tuple[int, int], name: str) -> Image:
         picture = self.gpu.targets.image(name, size)

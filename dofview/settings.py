@@ -18,6 +18,7 @@ from dofview.lens import Lens
 from dofview.methods import METHODS, method
 from dofview.methods.method import Params
 from dofview.render.display import Display
+from dofview.render.environment import Lighting
 from dofview.scene.camera import Camera
 
 LARGEST_SIDE = 16384
@@ -57,6 +58,7 @@ class Settings(BaseModel):
     params: MethodParams = MethodParams()  # type: ignore[valid-type]
     image: ImageSettings = ImageSettings()
     display: Display = Display()
+    light: Lighting = Lighting()
     background_linear: tuple[Linear, Linear, Linear] = Field(
         default=(0.05, 0.055, 0.065), description="Colour where nothing is, linear RGB."
     )
@@ -108,8 +110,11 @@ def _shown(value: object, length: int = 60) -> str:
     return text if len(text) <= length else text[: length - 1] + "…"
 
 
+_PARTS = (("camera", Camera), ("lens", Lens), ("image", ImageSettings), ("light", Lighting))
+
+
 def read_view(path: Path, base: Settings) -> Settings:
-    """Return `base` with what the JSON view file `path` says of camera, lens, image size and background.
+    """Return `base` with what the JSON view file `path` says of camera, lens, light, image size and background.
 
     Unknown keys are ignored; a wrong value is a SettingsError naming file and key.
     """
@@ -125,17 +130,20 @@ def read_view(path: Path, base: Settings) -> Settings:
 def apply_view(base: Settings, view: object, where: str, folder: Path | None = None) -> Settings:
     """Return `base` with what `view`, the content of a view file, says; pictures are looked for in `folder` first."""
     if not isinstance(view, dict):
-        raise SettingsError(f"{where}: a view file holds one JSON object with camera, lens, image, background_linear")
+        raise SettingsError(
+            f"{where}: a view file holds one JSON object with camera, lens, light, image, background_linear"
+        )
     changes: dict[str, object] = {}
-    for key, model in (("camera", Camera), ("lens", Lens), ("image", ImageSettings)):
+    for key, model in _PARTS:
         if view.get(key) is None:
             continue
         if not isinstance(view[key], dict):
             raise SettingsError(f"{where}: {key} is {_shown(view[key])}; accepted: an object")
         names = {"size"} if key == "image" else model.model_fields.keys()
         given = {k: v for k, v in view[key].items() if k in names}
-        if isinstance(given.get("image"), str):
-            given["image"] = _beside(folder, given["image"])
+        for picture in ("image", "environment"):
+            if isinstance(given.get(picture), str):
+                given[picture] = _beside(folder, given[picture])
         changes[key] = checked(model, {**getattr(base, key).model_dump(), **given}, f"{where}: {key}")
     if view.get("background_linear") is not None:
         changes["background_linear"] = view["background_linear"]

@@ -10,6 +10,7 @@ from dofview.cli.flags import Given
 from dofview.errors import SettingsError
 from dofview.framing import opening
 from dofview.lens import Lens, Photographic
+from dofview.render.environment import Lighting
 from dofview.scene.model import Scene
 from dofview.settings import LARGEST_SIDE, ImageSettings, Settings, checked, read_view
 
@@ -27,6 +28,8 @@ def settings_for(
     if method is not None:
         settings = settings.with_(method=method)
     settings = settings.with_(image=_image(settings.image, given.get("image", {})))
+    if "light" in given:
+        settings = settings.with_(light=checked(Lighting, {**settings.light.model_dump(), **given["light"]}, "light"))
     settings = _with_lens(settings, given.get("lens", {}), given.get("photo", {}))
     params = given.get("params", {})
     return settings.with_params(**params) if params else settings

@@ -17,6 +17,7 @@ from pydantic import BaseModel
 from dofview import fields
 from dofview.lens import Lens, Photographic
 from dofview.methods import METHODS, method
+from dofview.render.environment import Lighting
 from dofview.settings import LARGEST_SIDE, ImageSettings
 
 Given = dict[str, dict[str, Any]]
@@ -43,6 +44,7 @@ def of_settings(chosen: str | None) -> list[inspect.Parameter]:
     found = [
         *of_model("image", ImageSettings, Group("Picture", sort_key=2), NAMES),
         *of_model("lens", Lens, Group("Lens", sort_key=3), NAMES),
+        *of_model("light", Lighting, Group("Light", sort_key=4), NAMES),
         *of_model("photo", Photographic, Group("Lens", sort_key=3), NAMES),
     ]
     if chosen is not None:

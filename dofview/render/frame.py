@@ -15,7 +15,9 @@ from dofview.gl.context import Gpu
 from dofview.gl.filters import reduce_blocks
 from dofview.gl.targets import Image
 from dofview.lens import CocLaw, Lens, focal_px
-from dofview.render.raster import LightsBlock, Projection, draw_scene, projection
+from dofview.render.environment import Environment
+from dofview.render.lights import Lights
+from dofview.render.raster import Projection, draw_scene, projection
 from dofview.render.upload import GpuScene
 from dofview.scene.camera import Camera
 
@@ -87,7 +89,8 @@ class Frame:
 
     def __init__(
         self, gpu: Gpu, scene: GpuScene, camera: Camera, lens: Lens, size: tuple[int, int], *, guard: int = 0,
-        background: tuple[float, float, float] = (0.0, 0.0, 0.0), cache: FrameCache | None = None,
+        background: tuple[float, float, float] = (0.0, 0.0, 0.0), environment: Environment | None = None,
+        cache: FrameCache | None = None,
     ):  # fmt: skip
         self.gpu = gpu
         self.scene = scene
@@ -101,9 +104,9 @@ class Frame:
         self.lens_block = LensBlock(
             scale=self.coc.scale, inverse_focus=self.coc.inverse_focus, sigma=lens.matched_sigma_fraction
         )
-        self.lights = LightsBlock.at(camera)
+        self.lights = Lights.of(camera, environment)
         self.cache = cache or FrameCache()
-        self.geometry_key = (id(scene), camera, size, guard, background)
+        self.geometry_key = (id(scene), camera, size, guard, background, environment)
 
     def projection(self) -> Projection:
         """The pinhole projection through the lens centre."""

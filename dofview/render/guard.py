@@ -8,7 +8,8 @@ from dofview.gl.context import Gpu
 from dofview.gl.filters import reduce_blocks
 from dofview.lens import Lens, focal_px
 from dofview.render.frame import FrameCache
-from dofview.render.raster import LightsBlock, depth_range, draw_scene, projection
+from dofview.render.lights import Lights
+from dofview.render.raster import depth_range, draw_scene, projection
 from dofview.render.upload import GpuScene
 from dofview.scene.camera import Camera
 
@@ -56,7 +57,7 @@ def _seen_depths(
         images = gpu.targets.image("guard/color", canvas), gpu.targets.image("guard/inverse depth", canvas, 1)
         with gpu.profile.section("scene/guard band"):
             view = projection(scene, camera, small, band)
-            draw_scene(gpu, scene, view, images, lights=LightsBlock.at(camera))
+            draw_scene(gpu, scene, view, images, lights=Lights.of(camera, None))
         least, greatest, _, _ = reduce_blocks(gpu, images[1], "render/depth_range.frag", "guard/range")
         cache.values[key] = (float(greatest) * MARGIN, min(float(least), float(greatest)) / MARGIN)
     return cache.values[key]  # type: ignore[return-value]

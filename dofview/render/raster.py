@@ -7,46 +7,13 @@ from dataclasses import dataclass
 
 import moderngl
 import numpy as np
-from pydantic import BaseModel, ConfigDict
 
 from dofview.gl.context import Gpu
 from dofview.gl.passes import Blocks, Textures, bind, block_texts
 from dofview.gl.targets import Image
+from dofview.render.lights import Lights
 from dofview.render.upload import Draw, GpuScene
 from dofview.scene.camera import Camera
-
-Vec4 = tuple[float, float, float, float]
-
-
-class LightsBlock(BaseModel):
-    """Three directional lights and a sky that stand with the camera, as VTK's light kit does: a scene is lit well from
-    every side, and a scene turned together with its camera looks the same. Directions point to the light."""
-
-    model_config = ConfigDict(frozen=True)
-
-    key_direction: Vec4
-    key_radiance: Vec4 = (2.7, 2.6, 2.4, 0.0)
-    fill_direction: Vec4
-    fill_radiance: Vec4 = (0.55, 0.6, 0.7, 0.0)
-    back_direction: Vec4
-    back_radiance: Vec4 = (0.4, 0.4, 0.45, 0.0)
-    up: Vec4
-    zenith: Vec4 = (0.42, 0.46, 0.52, 0.0)
-    ground: Vec4 = (0.16, 0.145, 0.13, 0.0)
-
-    @classmethod
-    def at(cls, camera: Camera) -> LightsBlock:
-        """The rig of a camera, in world directions."""
-        axes = camera.axes()
-
-        def direction(right: float, up: float, backward: float) -> Vec4:
-            toward = np.array([right, up, backward]) @ axes
-            return (*(toward / np.linalg.norm(toward)).tolist(), 0.0)
-
-        return cls(
-            key_direction=direction(-0.5, 0.75, 0.7), fill_direction=direction(0.9, 0.15, 0.6),
-            back_direction=direction(0.2, 0.6, -0.9), up=direction(0.0, 1.0, 0.0),
-        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -98,7 +65,7 @@ def projection(
 
 
 def draw_scene(
-    gpu: Gpu, scene: GpuScene, view: Projection, into: Sequence[Image], *, lights: LightsBlock,
+    gpu: Gpu, scene: GpuScene, view: Projection, into: Sequence[Image], *, lights: Lights,
     background: tuple[float, float, float] = (0.0, 0.0, 0.0), background_alpha: float = 0.0, lod_bias: float = 0.0,
     reject: str | None = None, geometry: str | None = None, textures: Textures | None = None,
     blocks: Blocks | None = None, values: Mapping[str, object] | None = None,
@@ -126,8 +93,8 @@ def draw_scene(
             gpu.profile.count("draws culled")
             continue
         material = scene.materials.items[draw.material]
-        all_blocks = {"Material": material.block, "Lights": lights, **(blocks or {})}
-        all_defines = {**material.features, **(defines or {})}
+        all_blocks = {"Material": material.block, "Lights": lights.block, **(blocks or {})}
+        all_defines = {**material.features, **lights.defines, **(defines or {})}
         if reject is not None:
             all_defines |= {"HAS_REJECT": 1, "REJECT": reject}
         stages = ["render/scene.vert", *([geometry] if geometry else []), "render/scene.frag"]
@@ -138,6 +105,8 @@ def draw_scene(
             "clip_from_local": _column_major(view.clip_from_local), "lod_bias": lod_bias, **(values or {}),
         }  # fmt: skip
         all_values["eye"] = tuple(view.eye)
+        if "environment_map" in program.samplers:
+            named |= lights.textures
         bind(gpu, program, {**named, **(textures or {})}, all_blocks, all_values)
         samplers = list(enumerate(sampler for _, sampler in material.textures.values()))
         for unit, sampler in samplers:

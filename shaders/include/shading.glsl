@@ -1,6 +1,11 @@
 // Metallic-roughness shading (glTF 2.0 appendix B: GGX, Smith, Schlick) under three directional lights that stand with
 // the camera, and a soft sky. The lights follow the lens centre, not the lens sample, so all views see the same light.
+// Where there is an environment it takes the place of the sky, and the lights are dark.
 #include <Lights>
+#ifdef ENVIRONMENT_LEVELS
+#include "include/equirect.glsl"
+uniform sampler2D environment_map;
+#endif
 
 const float PI = 3.14159265;
 
@@ -38,6 +43,9 @@ vec3 direct_light(Surface surface, vec3 diffuse, vec3 f0, vec3 to_eye, vec3 to_l
 // Radiance of the sky from `direction`, blurred by `roughness`: a smooth gradient along the camera's up.
 vec3 sky(vec3 direction, float roughness)
 {
+#ifdef ENVIRONMENT_LEVELS
+    return textureLod(environment_map, equirect(direction), roughness * float(ENVIRONMENT_LEVELS - 1)).rgb;
+#endif
     float height = dot(direction, lights.up.xyz);
     float edge = mix(0.15, 1.0, roughness);
     return mix(lights.ground.rgb, lights.zenith.rgb, smoothstep(-edge, edge, height));
