@@ -114,11 +114,25 @@ class Window:
     def key(self, chord: str) -> None:
         self.xdo("key", chord)
 
-    def until(self, what: str, wanted: Callable[[np.ndarray], bool]) -> np.ndarray:
-        """Save pictures with Ctrl+S until one is as `wanted`: a slow machine shows the answer to a key late."""
-        deadline = time.monotonic() + 60.0
+    def drag(self, start: tuple[int, int], *through: tuple[int, int]) -> None:
+        """Press the left button at `start`, move, release; a hand is slower than a program."""
+        self.xdo("mousemove", *start, "sleep", 0.2, "mousedown", 1, "sleep", 0.2)
+        for point in through:
+            self.xdo("mousemove", *point, "sleep", 0.1)
+        self.xdo("mouseup", 1)
+
+    def until(
+        self, what: str, wanted: Callable[[np.ndarray], bool], act: Callable[[], None] = lambda: None
+    ) -> np.ndarray:
+        """Save pictures with Ctrl+S until one is as `wanted`: a slow machine shows the answer late. `act` is what
+        brings it about, and is done again when the answer does not come."""
+        deadline = time.monotonic() + 90.0
         known: set[Path] = set(self.folder.glob("dofview-*.png"))
+        act_at = 0.0
         while time.monotonic() < deadline:
+            if time.monotonic() > act_at:
+                act()
+                act_at = time.monotonic() + 15.0
             self.key("ctrl+s")
             time.sleep(1.0)
             fresh = sorted(set(self.folder.glob("dofview-*.png")) - known)
@@ -148,12 +162,18 @@ def test_the_real_window(display: dict[str, str], tmp_path: Path):
     window.key("h")
     window.until("the panels are back", lambda p: p.shape == first.shape)
 
-    window.xdo("mousemove", 200, 300, "mousedown", 1, "mousemove", 240, 310, "mousemove", 290, 320, "mouseup", 1)
-    turned = window.until("dragging turns the scene", lambda p: changed(p, first, 2.0))
+    turned = window.until(
+        "dragging turns the scene",
+        lambda p: changed(p, first, 2.0),
+        lambda: window.drag((200, 300), (240, 310), (290, 320)),
+    )
 
     slider = first.shape[1] + 30, 68  # the lens panel stands first, its topmost slider is the aperture
-    window.xdo("mousemove", *slider, "mousedown", 1, "mousemove", slider[0] + 90, slider[1], "mouseup", 1)
-    wider = window.until("a slider changes the blur", lambda p: changed(p, turned, 0.5))
+    wider = window.until(
+        "a slider changes the blur",
+        lambda p: changed(p, turned, 0.5),
+        lambda: window.drag(slider, (slider[0] + 90, slider[1])),
+    )
 
     window.key("ctrl+shift+o")
     time.sleep(1.0)

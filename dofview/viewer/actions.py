@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from dofview.methods import METHODS
+from dofview.viewer import files
+
 if TYPE_CHECKING:
     from dofview.viewer.app import App
 
@@ -25,30 +28,39 @@ class Action:
 
 
 def _next_method(app: App, step: int) -> None:
-    from dofview.methods import METHODS
-
     index = (METHODS.index(app.settings.method) + step) % len(METHODS)
     app.settings = app.settings.with_(method=METHODS[index])
 
 
-CTRL = int(imgui.Key.mod_ctrl)
+def _reset_view(app: App) -> None:
+    app.settings = app.settings.with_(camera=app.home.camera, lens=app.home.lens)
+
+
+def _ask_for_file(app: App) -> None:
+    if not files.has_dialog():
+        app.asking_for_path = True
+    elif spec := files.ask_for_scene():
+        app.open(spec)
+
+
+CTRL, SHIFT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_shift)
 
 ACTIONS: tuple[Action, ...] = (
-    Action("Open…", CTRL | int(imgui.Key.o), "Ctrl+O", "Open a glTF or OBJ scene.", lambda a: a.ask_for_file(), "File"),
-    Action("Open path…", CTRL | int(imgui.Key.mod_shift) | int(imgui.Key.o), "Ctrl+Shift+O",
-           "Type the path of a scene, or a demo such as demo:rail.", lambda a: a.ask_for_path(), "File"),
+    Action("Open…", CTRL | int(imgui.Key.o), "Ctrl+O", "Open a glTF or OBJ scene.", _ask_for_file, "File"),
+    Action("Open path…", CTRL | SHIFT | int(imgui.Key.o), "Ctrl+Shift+O",
+           "Type the path of a scene, or a demo such as demo:rail.",
+           lambda app: setattr(app, "asking_for_path", True), "File"),
     Action("Save picture", CTRL | int(imgui.Key.s), "Ctrl+S", "Save the picture as PNG, without the interface.",
-           lambda a: a.save_picture(), "File"),
-    Action("Quit", CTRL | int(imgui.Key.q), "Ctrl+Q", "Close the window.", lambda a: a.quit(), "File"),
-    Action("Fit", int(imgui.Key.f), "F", "See the whole scene from this direction.", lambda a: a.fit()),
-    Action("Reset view", int(imgui.Key.home), "Home", "Go back to the view the scene was opened with.",
-           lambda a: a.reset_view()),
-    Action("Next method", int(imgui.Key.tab), "Tab", "Switch to the next method.", lambda a: _next_method(a, 1)),
-    Action("Previous method", int(imgui.Key.mod_shift) | int(imgui.Key.tab), "Shift+Tab",
-           "Switch to the method before.", lambda a: _next_method(a, -1)),
-    Action("Compare with the reference", int(imgui.Key.r), "R", "Measure PSNR against the reference as it accumulates.",
-           lambda a: a.toggle_measuring()),
-    Action("Interface", int(imgui.Key.h), "H", "Show or hide the panels.", lambda a: a.toggle_panels()),
+           lambda app: app.save_picture(), "File"),
+    Action("Quit", CTRL | int(imgui.Key.q), "Ctrl+Q", "Close the window.",
+           lambda app: setattr(app, "quitting", True), "File"),
+    Action("Fit", int(imgui.Key.f), "F", "See the whole scene from this direction.", lambda app: app.fit()),
+    Action("Reset view", int(imgui.Key.home), "Home", "Go back to the view the scene was opened with.", _reset_view),
+    Action("Next method", int(imgui.Key.tab), "Tab", "Switch to the next method.", lambda app: _next_method(app, 1)),
+    Action("Previous method", SHIFT | int(imgui.Key.tab), "Shift+Tab", "Switch to the method before.",
+           lambda app: _next_method(app, -1)),
+    Action("Interface", int(imgui.Key.h), "H", "Show or hide the panels.",
+           lambda app: setattr(app, "panels_shown", not app.panels_shown)),
 )  # fmt: skip
 
 
@@ -56,7 +68,7 @@ def run_keys(app: App) -> None:
     """Run the action whose key was pressed, unless something is being typed."""
     if imgui.get_io().want_text_input:
         return
-    for action in ACTIONS:
+    for action in app.actions:
         if action.key and imgui.is_key_chord_pressed(action.key):
             action.run(app)
 
@@ -65,9 +77,9 @@ def menu_bar(app: App) -> None:
     """Draw the menus."""
     if not imgui.begin_main_menu_bar():
         return
-    for menu in dict.fromkeys(action.menu for action in ACTIONS):
+    for menu in dict.fromkeys(action.menu for action in app.actions):
         if imgui.begin_menu(menu):
-            for action in ACTIONS:
+            for action in app.actions:
                 if action.menu == menu and imgui.menu_item_simple(action.name, action.key_text):
                     action.run(app)
                 if action.menu == menu and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):

@@ -6,6 +6,7 @@ Nothing is rendered unless something it depends on has changed.
 
 from __future__ import annotations
 
+import statistics
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -14,16 +15,17 @@ from pathlib import Path
 from dofview.errors import DofviewError
 from dofview.gl.context import Gpu
 from dofview.gl.targets import Image
-from dofview.pipeline import Pipeline
+from dofview.pipeline import Pipeline, Result
 from dofview.render.display import show
 from dofview.scene.model import Scene
 from dofview.settings import ImageSettings, Settings
 from dofview.viewer import files, layout, navigation
-from dofview.viewer.actions import menu_bar, run_keys
+from dofview.viewer.actions import ACTIONS, Action, menu_bar, run_keys
 from dofview.viewer.dialogs import path_dialog
-from dofview.viewer.measure import Measurement
+from dofview.viewer.measure import Measurement, add_views
+from dofview.viewer.tool import Tool
+from dofview.viewer.tools import TOOLS
 
-REFERENCE_BUDGET_S = 0.03
 MESSAGE_S = 8.0
 
 
@@ -33,25 +35,26 @@ class App:
     def __init__(self, gpu: Gpu, scene: Scene, settings: Settings, wake: Callable[[], None] = lambda: None):
         self.gpu = gpu
         self.settings = settings
+        self.home = settings
         self.pipeline = Pipeline(gpu, scene)
-        self.measuring = False
-        self.antialias = False
+        self.tools: tuple[Tool, ...] = tuple(tool() for tool in TOOLS)
+        self.actions: tuple[Action, ...] = (*ACTIONS, *(a for tool in self.tools for a in tool.actions()))
+        self.wake = wake
         self.panels_shown = True
         self.asking_for_path = False
         self.quitting = False
-        self.measurement = Measurement()
+        self.message = ""
         self.milliseconds: list[float] = []
         self.scene_renders = 0
-        self.message = ""
+        self.result: Result | None = None
         self.shown: Image | None = None
-        self._wake = wake
-        self._home = settings
+        self.accumulated = Measurement()
+        self._figures: list[tuple[str, bool]] = []
         self._message_until = 0.0
         self._rendered: object = None
         self._displayed: object = None
         self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="load")
         self._loading: tuple[str, Future[tuple[Scene, Settings]]] | None = None
-        self._result = None
 
     @property
     def scene(self) -> Scene:
@@ -59,16 +62,20 @@ class App:
         return self.pipeline.scene.scene
 
     @property
+    def picture_key(self) -> Settings:
+        """What the picture depends on: the settings but for how it is displayed."""
+        return self.settings.model_copy(update={"display": None})
+
+    @property
     def busy(self) -> bool:
         """Whether another frame is needed though nobody touched anything."""
-        accumulating = self.measuring or self.settings.method == "accumulation"
-        return (accumulating and not self.measurement.done) or self._loading is not None or self._picture_outdated()
+        accumulating = self.settings.method == "accumulation" and not self.accumulated.done
+        outdated = self._rendered != self.picture_key
+        return accumulating or outdated or self._loading is not None or any(tool.busy(self) for tool in self.tools)
 
     def gui(self) -> None:
         """Draw the interface; call between imgui's new_frame and render."""
         self._finish_loading()
-        if self.message and time.monotonic() > self._message_until:
-            self.message = ""
         run_keys(self)
         if self.panels_shown:
             menu_bar(self)
@@ -79,15 +86,35 @@ class App:
         """Render what has changed; the interface calls it once it knows the size of the picture."""
         try:
             if self.settings.method == "accumulation":
-                self._accumulate_as_picture()
-            elif self._picture_outdated():
+                self._accumulate()
+            elif self._rendered != self.picture_key:
                 self._render()
-            if self.measuring and self.settings.method != "accumulation":
-                self._measure()
+            for tool in self.tools:
+                tool.update(self)
         except DofviewError as error:
             self.report(str(error))
-            self._rendered = self._picture_key()
-        self._display()
+            self._rendered = self.picture_key
+        key = (self._rendered, self.settings.display)
+        if self.result is not None and self._displayed != key:
+            self.shown = show(self.gpu, self.result.image, self.settings.display, "shown")
+            self._displayed = key
+
+    def figure(self, line: str, faint: bool = False) -> None:
+        """Write a line over the picture in this frame."""
+        self._figures.append((line, faint))
+
+    def take_figures(self) -> list[tuple[str, bool]]:
+        """The lines of this frame: method and time first, a message last."""
+        first = self.settings.method
+        if self.milliseconds and self.settings.method != "accumulation":
+            first += f"   {statistics.median(self.milliseconds[-9:]):.1f} ms"
+        lines = [(first, False), *self._figures]
+        if self.settings.method == "accumulation":
+            lines.append((self.accumulated.reference_text(), False))
+        if self.message and time.monotonic() < self._message_until:
+            lines.append((self.message, False))
+        self._figures = []
+        return lines
 
     def resize(self, size: tuple[int, int]) -> None:
         """Follow the size of the place where the picture is shown, pixels."""
@@ -99,18 +126,7 @@ class App:
     def open(self, spec: str) -> None:
         """Load a scene beside the window; the one shown stays until it is there."""
         self._loading = (spec, self._worker.submit(files.scene_and_view, spec, self.settings))
-        self._loading[1].add_done_callback(lambda _: self._wake())
-
-    def ask_for_file(self) -> None:
-        """Let the person choose a scene file."""
-        if not files.has_dialog():
-            self.asking_for_path = True
-        elif spec := files.ask_for_scene():
-            self.open(spec)
-
-    def ask_for_path(self) -> None:
-        """Let the person type the path of a scene, or the name of a demo."""
-        self.asking_for_path = True
+        self._loading[1].add_done_callback(lambda _: self.wake())
 
     def save_picture(self, path: Path | None = None) -> None:
         """Save the picture shown as PNG under `path`, or under a new name in the working folder."""
@@ -125,22 +141,6 @@ class App:
         """See the whole scene."""
         self.settings = self.settings.with_(camera=navigation.fit(self.settings.camera, self.scene.bounds))
 
-    def reset_view(self) -> None:
-        """Go back to the camera and lens the scene was opened with."""
-        self.settings = self.settings.with_(camera=self._home.camera, lens=self._home.lens)
-
-    def toggle_measuring(self) -> None:
-        """Switch the comparison with the reference."""
-        self.measuring = not self.measuring
-
-    def toggle_panels(self) -> None:
-        """Show or hide the panels."""
-        self.panels_shown = not self.panels_shown
-
-    def quit(self) -> None:
-        """Ask the host to close."""
-        self.quitting = True
-
     def reload_shaders(self) -> bool:
         """Take up shader files that were edited; True when the picture is to be drawn again."""
         if not self.gpu.shaders.reload():
@@ -154,10 +154,12 @@ class App:
         """Show one line for a while."""
         self.message = message
         self._message_until = time.monotonic() + MESSAGE_S
-        self._wake()
+        self.wake()
 
     def release(self) -> None:
         """Release what was made here."""
+        for tool in self.tools:
+            tool.release()
         self._worker.shutdown(wait=False, cancel_futures=True)
         self.pipeline.release()
 
@@ -172,71 +174,33 @@ class App:
         except DofviewError as error:
             self.report(str(error))
             return
-        kept = self.settings.image
-        self.settings = self._home = settings.with_(image=kept)
+        self.settings = self.home = settings.with_(image=self.settings.image)
         self._rendered = None
-        self.measurement = Measurement()
+        for tool in self.tools:
+            tool.scene_changed(self)
         notes = f", {len(scene.warnings)} notes" if scene.warnings else ""
         self.report(f"{spec}: {scene.triangle_count} triangles{notes}")
-
-    def _picture_key(self) -> object:
-        return self.settings.model_copy(update={"display": None})
-
-    def _picture_outdated(self) -> bool:
-        return self._rendered != self._picture_key() and self.settings.method != "accumulation"
 
     def _render(self) -> None:
         self.gpu.ctx.finish()
         start = time.perf_counter()
-        self._result = self.pipeline.render(self.settings)
+        self.result = self.pipeline.render(self.settings)
         self.gpu.ctx.finish()
         self.milliseconds = [*self.milliseconds[-119:], (time.perf_counter() - start) * 1e3]
         self.scene_renders += 1
-        self._rendered = self._picture_key()
+        self._rendered = self.picture_key
         self._displayed = None
-        self.measurement = Measurement()
 
-    def _measure(self) -> None:
-        """Add views to the reference and compare, until it vouches for the target."""
-        if self._result is None or self.measurement.done:
-            return
-        reference = self._add_views()
-        if reference.quality().views != self.measurement.quality.views:
-            psnr, quality = self.pipeline.compare(self._result, self.settings, antialias=self.antialias)
-            self.measurement = Measurement(psnr, quality)
-
-    def _accumulate_as_picture(self) -> None:
-        if self._rendered != self._picture_key():
-            self.measurement = Measurement()
-            self._rendered = self._picture_key()
-        if self.measurement.done:
+    def _accumulate(self) -> None:
+        """Show the progressive reference as the picture, a few views a frame."""
+        if self._rendered != self.picture_key:
+            self._rendered, self.accumulated = self.picture_key, Measurement()
+        if self.accumulated.done:
             return
         antialias = self.settings.params.accumulation.antialias
-        reference = self._add_views(antialias)
+        reference = self.pipeline.reference(self.settings, antialias=antialias)
+        add_views(self, reference)
         picture = self.pipeline.reference_picture(self.settings, antialias=antialias, name="picture")
-        self._result = _Accumulated(picture)
-        self.measurement = Measurement(0.0, reference.quality())
+        self.result = Result(picture, reference.frame)
+        self.accumulated = Measurement(0.0, reference.quality())
         self._displayed = None
-
-    def _add_views(self, antialias: bool | None = None):
-        reference = self.pipeline.reference(self.settings, antialias=self.antialias if antialias is None else antialias)
-        start = time.perf_counter()
-        while True:
-            reference.add(1)
-            self.scene_renders += 1
-            self.gpu.ctx.finish()
-            if time.perf_counter() - start >= REFERENCE_BUDGET_S:
-                return reference
-
-    def _display(self) -> None:
-        key = (self._rendered, self.settings.display)
-        if self._result is not None and self._displayed != key:
-            self.shown = show(self.gpu, self._result.image, self.settings.display, "shown")
-            self._displayed = key
-
-
-class _Accumulated:
-    """The reference's mean in the place of a method's result."""
-
-    def __init__(self, image: Image):
-        self.image = image

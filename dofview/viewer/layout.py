@@ -49,10 +49,8 @@ def _panels(app: App) -> None:
         app.settings = panels.method_panel(app.settings)
     if imgui.collapsing_header("Picture", opened):
         app.settings = panels.picture_panel(app.settings)
-    if imgui.collapsing_header("Measurement", opened):
-        app.measuring, app.antialias = panels.measure_panel(app.measurement, app.measuring, app.antialias)
+    for tool in app.tools:
+        if tool.title and imgui.collapsing_header(tool.title, opened if tool.opened else 0):
+            tool.panel(app)
     if imgui.collapsing_header("Scene"):
-        imgui.text_wrapped(f"{app.scene.name}: {app.scene.triangle_count} triangles")
-        for warning in app.scene.warnings:
-            imgui.bullet()
-            imgui.text_wrapped(warning)
+        panels.scene_panel(app.scene)

@@ -1,4 +1,4 @@
-"""What stands beside the picture: each panel takes what it shows and returns what the person made of it."""
+"""The panels of settings: each takes settings and returns them as the person left them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from imgui_bundle import imgui
 
 from dofview.lens import Lens, Photographic, depth_of_field, focal_px, hyperfocal_distance
 from dofview.methods import METHODS, method
+from dofview.scene.model import Scene
 from dofview.settings import Settings
-from dofview.viewer.measure import Measurement
 from dofview.viewer.widgets import edit
 
 SENSOR_HEIGHT_MM = 24.0
@@ -72,18 +72,9 @@ def picture_panel(settings: Settings) -> Settings:
     return settings
 
 
-def measure_panel(measurement: Measurement, measuring: bool, antialias: bool) -> tuple[bool, bool]:
-    """PSNR against the reference, greyed while the reference cannot support it; returns the two switches."""
-    measuring = imgui.checkbox("compare with the reference##measuring", measuring)[1]
-    antialias = imgui.checkbox("antialiased reference##antialias", antialias)[1]
-    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
-        imgui.set_tooltip("Methods are not antialiased by themselves: compare with render scale 2.")
-    if measuring:
-        text = measurement.psnr_text()
-        if measurement.trustworthy:
-            imgui.text(text)
-        else:
-            imgui.text_disabled(text)
-        imgui.text_disabled(measurement.reference_text())
-        imgui.progress_bar(measurement.progress, (-1.0, 0.0), "")
-    return measuring, antialias
+def scene_panel(scene: Scene) -> None:
+    """What was loaded, and what of it is not shown."""
+    imgui.text_wrapped(f"{scene.name}: {scene.triangle_count} triangles")
+    for warning in scene.warnings:
+        imgui.bullet()
+        imgui.text_wrapped(warning)

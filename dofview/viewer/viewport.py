@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import statistics
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
 from dofview.viewer import navigation
+from dofview.viewer.tool import Rect
 
 if TYPE_CHECKING:
     from dofview.viewer.app import App
@@ -25,6 +25,7 @@ def draw(app: App) -> None:
     origin = imgui.get_cursor_screen_pos()
     available = imgui.get_content_region_avail()
     factor = imgui.get_io().display_framebuffer_scale
+    rect = Rect(origin.x, origin.y, max(available.x, 1.0), max(available.y, 1.0))
     app.resize((round(available.x * factor.x), round(available.y * factor.y)))
     # Before the picture is handed to imgui: a resize replaces its texture.
     app.update()
@@ -32,48 +33,39 @@ def draw(app: App) -> None:
         # OpenGL's first row is the lowest: v runs upwards.
         imgui.image(imgui.ImTextureRef(app.shown.texture.glo), available, (0.0, 1.0), (1.0, 0.0))
         imgui.set_cursor_screen_pos(origin)
-    imgui.invisible_button("canvas", (max(available.x, 1.0), max(available.y, 1.0)), _BUTTONS)
-    _gestures(app, max(available.y, 1.0))
-    _figures(app, origin)
+    imgui.invisible_button("canvas", (rect.width, rect.height), _BUTTONS)
+    hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
+    taken = [tool.over_picture(app, rect, hovered) for tool in app.tools]
+    if not any(taken):
+        camera = _navigate(app, rect.height, hovered, active)
+        if camera != app.settings.camera:
+            app.settings = app.settings.with_(camera=camera)
+    _write_figures(app, rect)
 
 
-def _gestures(app: App, height: float) -> None:
+def _navigate(app: App, height: float, hovered: bool, active: bool):
+    """Left drag orbits, Shift+left or middle drag pans, right drag and wheel zoom."""
     io = imgui.get_io()
     camera = app.settings.camera
-    if imgui.is_item_active():
+    if active and (io.mouse_delta.x or io.mouse_delta.y):
         right, down = io.mouse_delta.x / height, io.mouse_delta.y / height
-        panning = imgui.is_mouse_down(imgui.MouseButton_.middle) or (
-            imgui.is_mouse_down(imgui.MouseButton_.left) and io.key_shift
-        )
-        if right or down:
-            if panning:
-                camera = navigation.pan(camera, -right, down)
-            elif imgui.is_mouse_down(imgui.MouseButton_.left):
-                camera = navigation.orbit(camera, right * ORBIT_DEG_PER_PICTURE, down * ORBIT_DEG_PER_PICTURE)
-            elif imgui.is_mouse_down(imgui.MouseButton_.right):
-                camera = navigation.zoom(camera, -down * 20.0)
-    if imgui.is_item_hovered() and io.mouse_wheel:
+        left_button = imgui.is_mouse_down(imgui.MouseButton_.left)
+        if imgui.is_mouse_down(imgui.MouseButton_.middle) or (left_button and io.key_shift):
+            camera = navigation.pan(camera, -right, down)
+        elif left_button:
+            camera = navigation.orbit(camera, right * ORBIT_DEG_PER_PICTURE, down * ORBIT_DEG_PER_PICTURE)
+        elif imgui.is_mouse_down(imgui.MouseButton_.right):
+            camera = navigation.zoom(camera, -down * 20.0)
+    if hovered and io.mouse_wheel:
         camera = navigation.zoom(camera, io.mouse_wheel)
-    if camera != app.settings.camera:
-        app.settings = app.settings.with_(camera=camera)
+    return camera
 
 
-def _figures(app: App, origin: imgui.ImVec2) -> None:
-    """Method, frame time and PSNR in the corner; a message at the foot."""
+def _write_figures(app: App, rect: Rect) -> None:
+    """The lines that app and tools left this frame, in the upper left corner."""
     draw_list = imgui.get_window_draw_list()
     size = imgui.get_font_size()
-    lines = [app.settings.method]
-    if app.milliseconds:
-        lines[0] += f"   {statistics.median(app.milliseconds[-9:]):.1f} ms"
-    if app.measuring and app.settings.method != "accumulation":
-        lines.append(app.measurement.psnr_text())
-    if app.measuring or app.settings.method == "accumulation":
-        lines.append(app.measurement.reference_text())
-    if app.message:
-        lines.append(app.message)
-    for number, line in enumerate(lines):
-        position = (origin.x + 0.7 * size, origin.y + (0.5 + 1.3 * number) * size)
-        shadow = (position[0] + 1.0, position[1] + 1.0)
-        faint = number == 1 and app.measuring and not app.measurement.trustworthy
-        draw_list.add_text(shadow, 0xC0000000, line)
+    for number, (line, faint) in enumerate(app.take_figures()):
+        position = (rect.left + 0.7 * size, rect.top + (0.5 + 1.3 * number) * size)
+        draw_list.add_text((position[0] + 1.0, position[1] + 1.0), 0xC0000000, line)
         draw_list.add_text(position, 0xFFA0A0A0 if faint else 0xFFFFFFFF, line)

@@ -41,7 +41,8 @@ def use(context: Context, app: App, host: Host) -> None:
 
     context.item_check("**/compare with the reference##measuring")
     context.yield_(30)
-    assert app.measurement.quality.views > 0 and np.isfinite(app.measurement.quality.self_psnr)
+    quality = app.tools[0].measurement.quality
+    assert quality.views > 0 and np.isfinite(quality.self_psnr)
     context.item_uncheck("**/compare with the reference##measuring")
 
     camera = app.settings.camera
