@@ -16,6 +16,8 @@ CANNOT_WRITE, INTERRUPTED = 3, 130
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command in `arguments` (those of the process when None) and return its exit status."""
+    # Mesa's loader complains on its own about what `GLError` then says once, with the remedy.
+    os.environ.setdefault("EGL_LOG_LEVEL", "fatal")
     try:
         from dofview.cli.app import run
 

@@ -45,7 +45,7 @@ def make_app(chosen: str | None) -> App:
     """The command line in which the parameters of the method `chosen` are flags."""
     app = App(
         name="dofview", help=(dofview.__doc__ or "").splitlines()[0], version=dofview.__version__,
-        result_action="return_value", help_format="plaintext",
+        result_action="return_value", help_format="plaintext", suppress_keyboard_interrupt=False,
     )  # fmt: skip
     picture = flags.of_settings(chosen)
     app.default(flags.with_flags(view, picture))

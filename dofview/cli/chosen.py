@@ -21,8 +21,17 @@ def settings_for(
     scene: Scene, spec: str, given: Given, *, view: Path | None = None, method: str | None = None,
     camera: str | None = None,
 ) -> Settings:  # fmt: skip
-    """Settings for `scene`, loaded from `spec`; SettingsError names the first value that cannot be used."""
-    settings = opening(scene, spec, camera=camera)
+    """Settings for `scene`, loaded from `spec`."""
+    return applied(opening(scene, spec, camera=camera), given, view=view, method=method)
+
+
+def applied(
+    settings: Settings, given: Given, *, view: Path | None = None, method: str | None = None
+) -> Settings:  # fmt: skip
+    """`settings` with the view file and then what was typed; SettingsError names the first value of no use.
+
+    Called before a scene is loaded too, so that a typing mistake does not cost the wait.
+    """
     if view is not None:
         settings = read_view(view, settings)
     if method is not None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dofview import export, metrics
-from dofview.cli.chosen import settings_for
+from dofview.cli.chosen import applied, settings_for
 from dofview.cli.flags import Given
 from dofview.cli.picture import headless, tell_warnings, timed
 from dofview.cli.runs import Comparing
@@ -47,6 +47,7 @@ def compare_into(
     """Render the reference and `methods` (names with commas between; None: all) into the folder `out`, and print."""
     comparing = checked(Comparing, given.get("comparing", {}), "compare")
     names = _names(methods)
+    applied(Settings(), given, view=view)
     _make_folder(out)
     scene = load(spec)
     settings = settings_for(scene, spec, given, view=view, camera=camera)

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from dofview import export
-from dofview.cli.chosen import settings_for
+from dofview.cli.chosen import applied, settings_for
 from dofview.cli.flags import Given
 from dofview.cli.runs import Timing
 from dofview.errors import GLError
@@ -29,6 +29,7 @@ def render_to(
 ) -> None:
     """Render one picture into `output` and print its facts, the last line as JSON."""
     timing = checked(Timing, given.get("timing", {}), "render")
+    applied(Settings(), given, view=view, method=method)
     export.check_writable(output)
     scene = load(spec)
     settings = settings_for(scene, spec, given, view=view, method=method, camera=camera)

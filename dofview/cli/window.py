@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from dofview.cli.chosen import settings_for
+from dofview.cli.chosen import applied, settings_for
 from dofview.cli.facts import screen
 from dofview.cli.flags import Given
 from dofview.errors import GLError
 from dofview.scene.load import load
+from dofview.settings import Settings
 
 
 def open_window(spec: str, given: Given, *, view: Path | None, method: str | None, camera: str | None) -> None:
@@ -18,6 +19,7 @@ def open_window(spec: str, given: Given, *, view: Path | None, method: str | Non
             "no screen for a window (neither DISPLAY nor WAYLAND_DISPLAY is set); "
             "without one: dofview render SCENE -o picture.png, dofview compare SCENE, or xvfb-run dofview"
         )
+    applied(Settings(), given, view=view, method=method)
     settings = settings_for(load(spec), spec, given, view=view, method=method, camera=camera)
     from dofview import viewer
 
