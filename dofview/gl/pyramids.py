@@ -7,9 +7,15 @@ the picture instead of the level, move coarse levels by up to a texel of theirs.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
+
+from dofview.gl.context import Gpu
+from dofview.gl.passes import draw
+from dofview.gl.targets import Image
 
 Size = tuple[int, int]
 
@@ -22,6 +28,52 @@ def level_size(size: Size, level: int) -> Size:
 def most_levels(size: Size) -> int:
     """How often `size` can be halved until a single texel is left."""
     return (max(size) - 1).bit_length()
+
+
+class Analysis(StrEnum):
+    """The filter that makes a level from the finer one before it."""
+
+    SPLINE = "spline"
+    BOX4 = "box4"
+    BOX2 = "box2"
+
+    def blur_sigma(self, levels: int) -> float:
+        """σ, px, of reducing `levels` times and expanding as often, mean over positions.
+
+        Reducing adds 3/4, 5/4 or 1/4 texel², expanding by biquadratic B-splines 3/4, each in texels twice the size of
+        those before. Only with the spline it is the same at every position, and nothing moves: with the boxes the
+        middle of a blurred point is up to half a coarse texel off (2×2) or half a pixel (4×4).
+        """
+        per_level = {Analysis.SPLINE: 0.75, Analysis.BOX4: 1.25, Analysis.BOX2: 0.25}[self] + 0.75
+        return float(np.sqrt(per_level * (4.0**levels - 1.0) / 3.0))
+
+
+def pyramid(gpu: Gpu, name: str, size: Size, levels: int, components: int = 4) -> list[Image]:
+    """Images of levels 1 to `levels` over `size`, called `name` and their number, fetched bilinearly."""
+    return [
+        gpu.targets.image(f"{name} {level}", level_size(size, level), components, linear=True)
+        for level in range(1, levels + 1)
+    ]
+
+
+def reduce(gpu: Gpu, fine: Image, coarse: Image, analysis: Analysis = Analysis.SPLINE) -> None:
+    """Write `coarse`, half the size of `fine` rounded up. `fine` must be fetched bilinearly (`linear=True`)."""
+    draw(gpu, "pass/reduce.frag", coarse, textures={"fine": fine}, defines={analysis.name: 1})
+
+
+def expand(gpu: Gpu, coarse: Image, fine: Image) -> None:
+    """Write `fine`, of twice the size of `coarse`, by biquadratic B-splines."""
+    draw(gpu, "pass/expand.frag", fine, textures={"coarse": coarse})
+
+
+def blur(gpu: Gpu, levels: Sequence[Image], analysis: Analysis = Analysis.SPLINE) -> Image:
+    """Blur the first of `levels` by reducing down to the last and expanding back to the second, which is returned: one
+    more expansion, left to the reader, and σ is `analysis.blur_sigma(len(levels) - 1)`."""
+    for fine, coarse in zip(levels[:-1], levels[1:], strict=True):
+        reduce(gpu, fine, coarse, analysis)
+    for fine, coarse in zip(levels[-2:0:-1], levels[:1:-1], strict=True):
+        expand(gpu, coarse, fine)
+    return levels[1]
 
 
 @dataclass(frozen=True)
