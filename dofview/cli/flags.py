@@ -35,7 +35,7 @@ NAMES = {
     "guard_px": ("--guard",),
 }
 """Flags of lens and image that are not named as their field."""
-METAVARS = {int: "INT", float: "NUMBER", Path: "FILE"}
+METAVARS = {int: "INT", float: "NUMBER", Path: "FILE", str: "NAME"}
 SIZE_HELP = f"Width and height, as 1024x768 [sides from 1 to {LARGEST_SIDE} px]."
 
 
@@ -63,7 +63,7 @@ def of_model(
         notes = [fields.accepted(field), f"default {fields.shown(field.default)}" if defaults else ""]
         how = Parameter(
             name=tuple((names or {}).get(name, (fields.flag(name),))),
-            help=SIZE_HELP if name == "size" else f"{field.description} [{'; '.join(filter(None, notes))}]",
+            help=SIZE_HELP if name == "size" else " ".join(filter(None, [field.description, *_bracketed(notes)])),
             metavar=None if kind is bool else "WxH" if name == "size" else METAVARS.get(kind, "CHOICE"),
             group=group, show_default=False,
         )  # fmt: skip
@@ -122,3 +122,8 @@ def joined_switches(tokens: Sequence[str], chosen: str | None) -> list[str]:
 def owners(flag: str) -> list[str]:
     """The methods that have a parameter of this flag."""
     return [name for name in METHODS if flag in map(fields.flag, method(name).Params.model_fields)]
+
+
+def _bracketed(notes: Sequence[str]) -> list[str]:
+    text = "; ".join(filter(None, notes))
+    return [f"[{text}]"] if text else []

@@ -20,7 +20,8 @@ def open_window(spec: str, given: Given, *, view: Path | None, method: str | Non
             "without one: dofview render SCENE -o picture.png, dofview compare SCENE, or xvfb-run dofview"
         )
     applied(Settings(), given, view=view, method=method)
-    settings = settings_for(load(spec), spec, given, view=view, method=method, camera=camera)
+    scene = load(spec)
+    settings = settings_for(scene, spec, given, view=view, method=method, camera=camera)
     from dofview import viewer
 
-    viewer.run(spec, settings)
+    viewer.run(scene, settings, spec)

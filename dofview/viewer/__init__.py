@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dofview.scene.model import Scene
 from dofview.settings import Settings
 
 
-def run(spec: str, settings: Settings) -> None:
-    """Open a window on the scene `spec` with `settings` and return when it is closed."""
-    from dofview.scene.load import load
+def run(scene: Scene, settings: Settings, spec: str) -> None:
+    """Open a window on `scene`, which was loaded from `spec`, with `settings` and return when it is closed."""
     from dofview.viewer.window import run as run_window
 
-    run_window(load(spec), settings, title=f"dofview — {spec}")
+    run_window(scene, settings, title=f"dofview — {spec}")

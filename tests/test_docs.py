@@ -1,0 +1,51 @@
+"""Documentation that is made from the code is made from this code."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from dofview.methods import METHODS, method
+
+ROOT = Path(__file__).parents[1]
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+
+
+@pytest.fixture(scope="module")
+def generator() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("parameters", ROOT / "docs" / "parameters.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_the_parameter_table_is_current(generator: ModuleType, name: str):
+    """`make docs` writes it."""
+    text = (ROOT / "docs" / "methods" / f"{name}.md").read_text(encoding="utf-8")
+    assert generator.page(name, text) == text
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_table_has_a_row_for_every_parameter(generator: ModuleType, name: str):
+    for field, info in method(name).Params.model_fields.items():
+        row = next(line for line in generator.table(name).splitlines() if f"`--{field.replace('_', '-')}`" in line)
+        assert info.description.replace("|", "\\|") in row
+
+
+def test_a_table_replaces_the_old_one_and_nothing_else(generator: ModuleType):
+    text = "# A\n\nBefore.\n\n<!-- parameters -->\nold\n<!-- /parameters -->\n\nAfter.\n"
+    fresh = generator.page("pinhole", text)
+    assert "old" not in fresh and fresh.startswith("# A\n\nBefore.\n") and fresh.endswith("\nAfter.\n")
+    assert generator.page("pinhole", fresh) == fresh
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_links_lead_somewhere(page: Path):
+    for target in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8")):
+        if not target.startswith(("http://", "https://")):
+            assert (page.parent / target).exists(), f"{page.name} links to {target}"
