@@ -32,7 +32,7 @@ class Demo:
 
 DEMOS: dict[str, Demo] = {
     "foreground": Demo(
-        "Strings of beads far in front of a tiled wall that is in focus.", (-14, 0), foreground.VIEW, foreground.parts
+        "Strings of beads far in front of a tiled wall that is in focus.", (-14, 0.5), foreground.VIEW, foreground.parts
     ),
     "background": Demo(
         "A still life in focus, with tables, balls and a wall of books behind it.",

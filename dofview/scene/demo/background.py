@@ -50,11 +50,11 @@ def parts() -> list[Part]:
 
 def _subject() -> list[Part]:
     wood = painted("cube", paint.checker(61, ("e6d3a7", "3a2115"), 4), 0.5)
-    jar = painted("jar", paint.kilim(66, ("f2ead6", "1f5a66", "c8452f", "e0a030"), 9), 0.3)
+    jar = painted("jar", paint.kilim(66, ("f2ead6", "1f5a66", "c8452f", "e0a030"), 9), 0.45)
     ball = painted(
         "ball", paint.terrazzo(63, ("f0e9da", "f8f3e8"), ("c8452f", "1f5a66", "e0a030", "26313f"), 256), 0.25
     )
-    brass = painted("brass", paint.plaster(64, ("b58a40", "c9a04e", "dab868"), 1.4, 6.0), 0.3, 1.0)
+    brass = painted("brass", paint.plaster(64, ("b58a40", "c9a04e", "dab868"), 1.4, 6.0), 0.5, 1.0)
     cube = place(box((0.5, 0.5, 0.5), 0.03, 8, 0.5), (0.5, 0.25, -0.55), (0, 28, 0))
     on_cube = near((0.52, 0.25, -0.55, 0.3))
     return [

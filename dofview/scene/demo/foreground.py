@@ -1,4 +1,4 @@
-"""Demo scene `foreground`: strings of beads hang far in front of a tiled wall and a shelf that are in focus."""
+"""Demo scene `foreground`: strings of beads hang far in front of a tiled wall with a niche, in focus."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from dofview.scene.demo import patterns as paint
 from dofview.scene.demo.parts import Part, both, near, painted, standing
-from dofview.scene.demo.shapes import Shape, box, lathe, place, sheet, sphere, tube
+from dofview.scene.demo.shapes import Shape, lathe, place, sheet, sphere, tube
 
 VIEW = {
     "camera": {
@@ -46,7 +46,7 @@ VASE = (
     (0.15, 0.92),
 )
 BOWL = ((0.0, 0.0), (0.16, 0.0), (0.18, 0.05), (0.34, 0.17), (0.4, 0.3), (0.37, 0.29), (0.3, 0.18), (0.0, 0.08))
-TOP = 0.22
+NICHE = 1.2  # how high the niche is above its shelf, which is at y = 0
 BOTTLE = (
     (0.0, 0.0),
     (0.15, 0.0),
@@ -62,10 +62,10 @@ BOTTLE = (
 
 def parts() -> list[Part]:
     """All shapes with their materials."""
-    shelf = [(0.9 * x, TOP - 0.05, 0.3, 0.4) for x in np.arange(-5, 6)]
-    wall = near(*shelf, (-1.75, 0.6, 0.32, 0.38), (0.2, 0.4, 0.4, 0.35), (1.55, 0.5, 0.3, 0.2), strength=0.6)
     tiles = painted("tiles", paint.azulejo(), 0.5, tint=0.9)
-    return [Part(sheet((-4.5, -1.8, 0), (9, 0, 0), (0, 6.6, 0), (40, 30), 2.4), tiles, wall), *_shelf(), *_curtain()]
+    wall = sheet((-4.5, -1.8, 0), (9, 0, 0), (0, 1.8, 0), (24, 6), 2.4)
+    wall += sheet((-4.5, NICHE, 0), (9, 0, 0), (0, 3.6, 0), (24, 10), 2.4)
+    return [Part(wall, tiles), *_niche(), *_curtain()]
 
 
 def _curtain() -> list[Part]:
@@ -92,19 +92,30 @@ def _curtain() -> list[Part]:
     return [*(Part(sum(s, ()), m) for s, m in zip(shapes, beads, strict=True)), Part(sum(rods, ()), cane)]
 
 
-def _shelf() -> list[Part]:
+def _dusk(positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Shade in the niche: darker the deeper and the nearer to its ceiling."""
+    return 1.0 - 0.5 * np.clip(-positions[:, 2] / 0.4, 0, 1) * np.clip(positions[:, 1] / NICHE + 0.15, 0, 1)
+
+
+def _niche() -> list[Part]:
+    """A recess in the wall; what stands in it has its outline in the plane of the tiles, where focus is."""
     oak = painted("oak", paint.wood(41, ("4a2c17", "7a4c28", "a87240", "c69458"), 2, 256), 0.7)
-    blue = painted("vase", paint.kilim(42, ("1d3f7a", "f4efe2", "d9942f", "7fb2d9"), 6), 0.3)
+    ochre = painted("ochre wall", paint.plaster(46, ("b98534", "cc9a45", "dcb062"), 1.0), 0.95)
+    blue = painted("vase", paint.kilim(42, ("1d3f7a", "f4efe2", "d9942f", "7fb2d9"), 6), 0.4)
     clay = painted("clay", paint.plaster(43, ("8a3f22", "b65a31", "d07a48")), 0.8)
-    glass = painted("bottle", paint.stripes(44, ("23513f", "2f6b52", "e2d9b8", "2f6b52"), 16), 0.2)
-    fruit = painted("orange", paint.plaster(45, ("d9701a", "f08c24", "f6a93b"), 0.7), 0.5)
-    oranges = [(0.08, 0.48, 0.45, 0.13), (0.33, 0.49, 0.42, 0.14), (0.22, 0.62, 0.42, 0.13)]
-    on_shelf = standing(TOP, 0.15)
+    glass = painted("bottle", paint.stripes(44, ("23513f", "2f6b52", "e2d9b8", "2f6b52"), 16), 0.4)
+    fruit = painted("orange", paint.plaster(45, ("d9701a", "f08c24", "f6a93b"), 0.7), 0.6)
+    oranges = [(0.08, 0.26, 0.05, 0.13), (0.33, 0.27, 0.02, 0.14), (0.22, 0.4, 0.02, 0.13)]
+    stood = near((-1.75, 0.3, 0, 0.36), (0.2, 0.2, 0, 0.36), (1.55, 0.3, 0, 0.2), (2.2, 0.2, 0, 0.22), strength=0.9)
+    shelf = sheet((-4.5, 0, 0), (9, 0, 0), (0, 0, -0.4), (60, 4), 1.5)
+    ceiling = sheet((-4.5, NICHE, -0.4), (9, 0, 0), (0, 0, 0.4), (12, 2), 1.5)
+    floor = standing(0, 0.15)
     return [
-        Part(place(box((9.0, 0.1, 0.6), 0.02, 8, 1.5), (0, TOP - 0.05, 0.3)), oak, standing(TOP - 0.1, 0.02)),
-        Part(place(lathe(VASE, (32, 24), (3, 1)), (-1.75, TOP, 0.32)), blue, on_shelf),
-        Part(place(lathe(BOWL, (32, 16), (4, 1)), (0.2, TOP, 0.4), scale=1.1), clay, on_shelf),
-        Part(sum((place(sphere(r), at) for *at, r in oranges), ()), fruit, both(standing(TOP, 0.2), near(*oranges))),
-        Part(place(lathe(BOTTLE, (24, 20), (2, 1)), (1.55, TOP, 0.3)), glass, on_shelf),
-        Part(place(lathe(VASE, (24, 16), (3, 1)), (2.2, TOP, 0.36), scale=0.6), clay, on_shelf),
+        Part(shelf + ceiling, oak, stood),
+        Part(sheet((-4.5, 0, -0.4), (9, 0, 0), (0, NICHE, 0), (45, 8), 1.2), ochre, both(_dusk, stood)),
+        Part(place(lathe(VASE, (32, 24), (3, 1)), (-1.75, 0, 0)), blue, floor),
+        Part(place(lathe(BOWL, (32, 16), (4, 1)), (0.2, 0, 0), scale=1.1), clay, floor),
+        Part(sum((place(sphere(r), at) for *at, r in oranges), ()), fruit, both(standing(0, 0.2), near(*oranges))),
+        Part(place(lathe(BOTTLE, (24, 20), (2, 1)), (1.55, 0, 0)), glass, floor),
+        Part(place(lathe(VASE, (24, 16), (3, 1)), (2.2, 0, 0), scale=0.6), clay, floor),
     ]

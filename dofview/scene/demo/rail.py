@@ -66,7 +66,7 @@ def _room() -> list[Part]:
 
 def _track() -> list[Part]:
     sleeper = painted("sleeper", paint.wood(91, ("3a2213", "64401f", "8a5c30", "a87a48"), 1, 256), 0.8)
-    steel = painted("steel", paint.plaster(92, ("6d6f70", "9a9c9b", "c9c8c2"), 0.8, 5.0), 0.4, 0.6)
+    steel = painted("steel", paint.plaster(92, ("6d6f70", "9a9c9b", "c9c8c2"), 0.8, 5.0), 0.5, 0.6)
     post = painted("post", paint.stripes(93, ("b3372b", "efe5cf"), 8), 0.6)
     turn = (0.0, HEADING, 0.0)
     planks: list[Shape] = [
@@ -93,10 +93,10 @@ def _track() -> list[Part]:
 
 def _train() -> list[Part]:
     paints = {
-        "body": painted("engine", paint.plaster(101, ("7d1a15", "a8251c", "bf3527"), 1.2), 0.3),
-        "boiler": painted("boiler", paint.stripes(106, ("1d4a3c", "235746", "1d4a3c", "c9a04e"), 8), 0.3),
-        "dark": painted("iron", paint.plaster(102, ("1f2023", "2b2c30", "38393d"), 0.9), 0.4),
-        "brass": painted("brass", paint.plaster(103, ("b58a40", "c9a04e", "dab868"), 1.4, 5.0), 0.25, 1.0),
+        "body": painted("engine", paint.plaster(101, ("7d1a15", "a8251c", "bf3527"), 1.2), 0.5),
+        "boiler": painted("boiler", paint.stripes(106, ("1d4a3c", "235746", "1d4a3c", "c9a04e"), 8), 0.5),
+        "dark": painted("iron", paint.plaster(102, ("1f2023", "2b2c30", "38393d"), 0.9), 0.55),
+        "brass": painted("brass", paint.plaster(103, ("b58a40", "c9a04e", "dab868"), 1.4, 5.0), 0.5, 1.0),
         "blue": painted("wagon", paint.checker(104, ("28507a", "e8d9b4"), 6), 0.5),
         "gold": painted("wagon", paint.kilim(105, ("d99a2b", "7d2a26", "f0e2bf", "2b5d50"), 5), 0.5),
     }
@@ -168,7 +168,7 @@ def _wagon(body: str, load: str) -> list[tuple[str, Shape]]:
 def _toys() -> list[Part]:
     colors = (("c8452f", "f0e2bf"), ("e0a030", "5a3013"), ("2f6b62", "e8dcc0"), ("28507a", "d9e2e6"))
     cubes = [painted("cube", paint.checker(110 + i, pair, 4), 0.6) for i, pair in enumerate(colors)]
-    ball = painted("ball", paint.stripes(115, ("c8452f", "f4efe2", "28507a", "e0a030"), 8), 0.3)
+    ball = painted("ball", paint.stripes(115, ("c8452f", "f4efe2", "28507a", "e0a030"), 8), 0.5)
     shade = standing(0, 0.25)
     blocks = [
         Part(place(box((s, s, s), 0.04, 5, s), (x, s / 2, z), (0, turn, 0)), cubes[i], shade)
