@@ -7,7 +7,7 @@ from importlib import import_module
 from dofview.errors import SettingsError
 from dofview.methods.method import Method
 
-METHODS = ("pinhole", "mipmap", "multiview", "accumulation")
+METHODS = ("pinhole", "mipmap", "multiview", "layered", "accumulation")
 
 
 def method(name: str) -> Method:

@@ -1,0 +1,135 @@
+// How much of each peeled surface belongs to one layer, and how a layer joins the buffer in front of or behind it.
+//
+// Depths are inverse: nearer is greater, background at infinity is 0. A surface between the depths of two layers is
+// shared out between them, linearly in 1/z, so that its blur is the mean of theirs (Schedl 2012, eq 3-4). How exactly is
+// what MATTING chooses.
+//
+// SHARED: anchors lie at the layers' own depths. Of a surface between layers k-1 and k, the nearer of them takes the
+// `head`, 1-t, and layer k the `tail`, t. In the front buffer the head is there first and has been blurred: beside it
+// the tail adds t, or what coverage is left, so that the silhouette is the mean of the two blurs. In the back buffer the
+// sharper head is blended over the tail, which therefore may stay whole.
+// PAPER: anchors lie half way between layers; omega and omega-dot as printed. The tail is whole in front too and lies
+// under its own head, which widens every silhouette by a part of the blur between two layers.
+uniform sampler2D depths_first;
+uniform sampler2D color0;
+#if PEELS > 1
+uniform sampler2D color1;
+#endif
+#if PEELS > 2
+uniform sampler2D color2;
+#endif
+#if PEELS > 3
+uniform sampler2D color3;
+#endif
+#if PEELS > 4
+uniform sampler2D depths_last;
+uniform sampler2D color4;
+#endif
+#if PEELS > 5
+uniform sampler2D color5;
+#endif
+#if PEELS > 6
+uniform sampler2D color6;
+#endif
+#if PEELS > 7
+uniform sampler2D color7;
+#endif
+uniform vec4 anchors;  // inverse depths z_(k-2), z_(k-1), z_k, z_(k+1) of layer k, falling
+uniform vec3 background;
+
+struct Surface
+{
+    float inverse_depth;
+    vec3 color;
+};
+
+void fetch_surfaces(ivec2 pixel, out Surface surfaces[PEELS])
+{
+    float inverse_depths[8];
+    vec4 depths = texelFetch(depths_first, pixel, 0), colors[PEELS];
+    for (int i = 0; i < 4; ++i) inverse_depths[i] = depths[i];
+    colors[0] = vec4(texelFetch(color0, pixel, 0).rgb, 1.0);
+#if PEELS > 1
+    colors[1] = texelFetch(color1, pixel, 0);
+#endif
+#if PEELS > 2
+    colors[2] = texelFetch(color2, pixel, 0);
+#endif
+#if PEELS > 3
+    colors[3] = texelFetch(color3, pixel, 0);
+#endif
+#if PEELS > 4
+    depths = texelFetch(depths_last, pixel, 0);
+    for (int i = 0; i < 4; ++i) inverse_depths[4 + i] = depths[i];
+    colors[4] = texelFetch(color4, pixel, 0);
+#endif
+#if PEELS > 5
+    colors[5] = texelFetch(color5, pixel, 0);
+#endif
+#if PEELS > 6
+    colors[6] = texelFetch(color6, pixel, 0);
+#endif
+#if PEELS > 7
+    colors[7] = texelFetch(color7, pixel, 0);
+#endif
+    // Behind the last surface of a pixel is the background, which is known, and opaque.
+    for (int m = 0; m < PEELS; ++m)
+        surfaces[m] = Surface(inverse_depths[m], mix(background, colors[m].rgb, colors[m].a));
+}
+
+// 0 at `near` and before, 1 at `far` and beyond.
+float ramp(float inverse_depth, float near, float far)
+{
+    return clamp((near - inverse_depth) / max(near - far, 1e-37), 0.0, 1.0);
+}
+
+// The part of a surface that lies behind this layer's anchor. A surface right behind another one of the same interval
+// (`before`) waits until that one is complete, or it would be blended over what hides it.
+float head(float inverse_depth, float before)
+{
+    return before >= anchors.z ? 1.0 - ramp(inverse_depth, anchors.z, anchors.w) : 0.0;
+}
+
+float tail(float inverse_depth, float before)
+{
+    return before >= anchors.y ? ramp(inverse_depth, anchors.y, anchors.z) : 1.0;
+}
+
+// The layer by itself, premultiplied.
+vec4 layer(ivec2 pixel)
+{
+    Surface surfaces[PEELS];
+    fetch_surfaces(pixel, surfaces);
+    vec4 sum = vec4(0.0);
+    float before = 3e38;
+    for (int m = 0; m < PEELS; ++m) {
+        float z = surfaces[m].inverse_depth;
+#ifdef PAPER
+        float omega = z >= anchors.z ? ramp(z, anchors.x, anchors.y) : m == 0 ? 1.0 - ramp(z, anchors.z, anchors.w) : 0.0;
+#else
+        float omega = z > anchors.y ? 0.0 : z >= anchors.z ? 1.0 : head(z, before);
+#endif
+        sum += (1.0 - sum.a) * omega * vec4(surfaces[m].color, 1.0);
+        before = z;
+    }
+    return sum;
+}
+
+// The front buffer with this layer under it.
+vec4 under(vec4 front, ivec2 pixel)
+{
+#ifdef PAPER
+    return front + (1.0 - front.a) * layer(pixel);
+#else
+    Surface surfaces[PEELS];
+    fetch_surfaces(pixel, surfaces);
+    float before = 3e38;
+    for (int m = 0; m < PEELS; ++m) {
+        float z = surfaces[m].inverse_depth, left = max(1.0 - front.a, 0.0);
+        float share = z > anchors.y ? 0.0 : z >= anchors.z ? min(tail(z, before), left) : head(z, before) * left;
+        front += share * vec4(surfaces[m].color, 1.0);
+        before = z;
+    }
+    return front;
+#endif
+}
