@@ -1,0 +1,82 @@
+"""Runs rows over methods and seeds until time or cases are used up, and says what was not held."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dofview.errors import SettingsError
+from dofview.gl.context import Gpu
+from dofview.methods import METHODS
+from dofview.stress import blur, light, motion, symmetry
+from dofview.stress.bench import Bench
+from dofview.stress.row import Failure, Measured, Row, failures
+
+ROWS: tuple[Row, ...] = tuple(
+    sorted((*light.ROWS, *blur.ROWS, *symmetry.ROWS, *motion.ROWS), key=lambda row: row.number)
+)
+
+
+@dataclass
+class Report:
+    """What was run: cases, failures, and the value nearest to its bound for each row and method."""
+
+    cases: int = 0
+    failures: list[Failure] = field(default_factory=list)
+    worst: dict[tuple[int, str, str], tuple[float, float]] = field(default_factory=dict)
+
+    def add(self, row: Row, method: str, seed: int, size: int, measured: list[Measured]) -> list[Failure]:
+        """Take in one case and return what it failed."""
+        self.cases += 1
+        for value, bound in zip(measured, row.bounds[method], strict=True):
+            key = (row.number, method, value.what)
+            before = self.worst.get(key)
+            if before is None or (value.value < before[0] if value.at_least else value.value > before[0]):
+                self.worst[key] = (value.value, bound)
+        found = failures(row, method, seed, size, measured)
+        self.failures += found
+        return found
+
+
+def chosen_rows(number: int | None) -> tuple[Row, ...]:
+    """The row called `number`, or all."""
+    rows = tuple(row for row in ROWS if number in (None, row.number))
+    if not rows:
+        raise SettingsError(f"no row {number}; accepted: {', '.join(str(row.number) for row in ROWS)}")
+    return rows
+
+
+def cases(rows: tuple[Row, ...], methods: tuple[str, ...], seed: int) -> Iterator[tuple[Row, str, int]]:
+    """Every row and method with `seed`, then with the next seed, for ever."""
+    while True:
+        for row in rows:
+            for method in row.methods():
+                if method in methods:
+                    yield row, method, seed
+        seed += 1
+
+
+def stress(
+    gpu: Gpu, *, rows: tuple[Row, ...] = ROWS, methods: tuple[str, ...] = METHODS, seed: int = 1, size: int = 128,
+    views: int = 256, minutes: float | None = None, rounds: int = 1,
+    on_case: Callable[[Row, str, int, list[Failure]], None] = lambda row, method, seed, found: None,
+) -> Report:  # fmt: skip
+    """Run cases for `minutes`, or `rounds` seeds of every row and method when no time is given."""
+    bench = Bench(gpu, size, views)
+    report = Report()
+    deadline = None if minutes is None else time.monotonic() + 60.0 * minutes
+    try:
+        for row, method, number in cases(rows, methods, seed):
+            over = number >= seed + rounds if deadline is None else time.monotonic() >= deadline
+            if over:
+                return report
+            measured = row.check(bench, method, np.random.default_rng([row.number, number]))
+            if gpu.ctx.error != "GL_NO_ERROR":
+                report.failures.append(Failure(row.number, method, number, size, "OpenGL errors", 1.0, 0.0))
+            on_case(row, method, number, report.add(row, method, number, size, measured))
+    finally:
+        bench.release()
+    return report
