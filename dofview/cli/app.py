@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -51,7 +52,7 @@ def make_app(chosen: str | None) -> App:
     app.default(flags.with_flags(view, picture))
     app.command(flags.with_flags(render, [*flags.of_model("timing", Timing, PACE), *picture]))
     app.command(flags.with_flags(compare, [*flags.of_model("comparing", Comparing, PACE), *flags.of_settings(None)]))
-    for command in (methods, info, doctor):
+    for command in (methods, info, doctor, stress):
         app.command(command)
     return app
 
@@ -115,6 +116,26 @@ def doctor(*, json: Json = False) -> None:
     show_doctor(json)
 
 
+def stress(
+    *, minutes: float | None = None, row: int | None = None, method: MethodName = None, seed: int = 1,
+    size: int = 128, views: int = 256, rounds: int = 1,
+) -> None:  # fmt: skip
+    """Try every method under random and cornered settings and judge the pictures by invariants with stated bounds.
+
+    Parameters
+    ----------
+    minutes
+        How long; without it each row is tried `rounds` times.
+    row
+        Only this invariant, by its number.
+    seed
+        The first seed; each round takes the next.
+    """
+    from dofview.cli.stressing import run_stress
+
+    sys.exit(run_stress(minutes, row, method, seed, size, views, rounds))
+
+
 def _unknown(error: UnknownOptionError, chosen: str | None) -> str:
     flag = str(error.token.keyword or error.token.value) if error.token else str(error)
     names = [n for a in error.argument_collection or () for n in a.names if n.startswith("--")]
@@ -126,6 +147,6 @@ def _unknown(error: UnknownOptionError, chosen: str | None) -> str:
 
 
 def _hint(tokens: Sequence[str]) -> str:
-    known = ("render", "compare", "methods", "info", "doctor")
+    known = ("render", "compare", "methods", "info", "doctor", "stress")
     command = next((t for t in tokens if t in known), "")
     return f"; see dofview {command + ' ' if command else ''}--help"

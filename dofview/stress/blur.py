@@ -18,7 +18,7 @@ GAUSSIAN_EDGE = 2.5631
 
 def point_size(bench: Bench, method: str, random: np.random.Generator) -> list[Measured]:
     """√(2⟨r²⟩) of a blurred point is the CoC radius, its centroid the pinhole's place."""
-    coc = random.uniform(5.0, 0.1 * bench.size)
+    coc = random.uniform(0.05, 0.1) * bench.size
     scene, lens, _ = one_pixel(bench, method, random, coc)
     picture = bench.picture(scene, bench.settings(method, lens)).sum(axis=2)
     sharp = bench.picture(scene, bench.settings("pinhole", lens)).sum(axis=2)

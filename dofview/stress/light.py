@@ -36,7 +36,7 @@ def point_energy(bench: Bench, method: str, random: np.random.Generator) -> list
 def one_pixel(bench: Bench, method: str, random: np.random.Generator, coc_px: float | None = None):
     """One emitter exactly on a pixel of a black wall, a lens that gives it `coc_px`, and the sum it must keep."""
     pixels = focal_px(bench.size, CAMERA.vfov_deg)
-    coc = coc_px if coc_px is not None else random.uniform(3.0, 0.12 * bench.size)
+    coc = coc_px if coc_px is not None else random.uniform(0.03, 0.12) * bench.size
     depth = random.choice([random.uniform(2.0, 3.5), random.uniform(7.0, 12.0)])
     focus = 5.0
     radius = coc / (pixels * abs(1.0 / focus - 1.0 / depth))

@@ -57,24 +57,28 @@ class Failure:
     method: str
     seed: int
     size: int
+    views: int
     what: str
     value: float
     bound: float
 
     def command(self) -> str:
         """A command line that repeats this case alone."""
-        return f"dofview stress --row {self.row} --method {self.method} --seed {self.seed} --size {self.size}"
+        return (
+            f"dofview stress --row {self.row} --method {self.method} --seed {self.seed} --size {self.size} "
+            f"--views {self.views}"
+        )
 
     def __str__(self) -> str:
         what = f"row {self.row} {self.method}: {self.what} is {self.value:.4g}, bound {self.bound:.4g}"
         return f"{what}\n    {self.command()}"
 
 
-def failures(row: Row, method: str, seed: int, size: int, measured: Sequence[Measured]) -> list[Failure]:
+def failures(row: Row, method: str, seed: int, size: int, views: int, measured: Sequence[Measured]) -> list[Failure]:
     """The values beyond their bounds; a value that is not a number is beyond every bound."""
     found = []
     for value, bound in zip(measured, row.bounds[method], strict=True):
         held = value.value >= bound if value.at_least else value.value <= bound
         if not held:
-            found.append(Failure(row.number, method, seed, size, value.what, value.value, bound))
+            found.append(Failure(row.number, method, seed, size, views, value.what, value.value, bound))
     return found

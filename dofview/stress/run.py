@@ -28,7 +28,7 @@ class Report:
     failures: list[Failure] = field(default_factory=list)
     worst: dict[tuple[int, str, str], tuple[float, float]] = field(default_factory=dict)
 
-    def add(self, row: Row, method: str, seed: int, size: int, measured: list[Measured]) -> list[Failure]:
+    def add(self, row: Row, method: str, seed: int, bench: Bench, measured: list[Measured]) -> list[Failure]:
         """Take in one case and return what it failed."""
         self.cases += 1
         for value, bound in zip(measured, row.bounds[method], strict=True):
@@ -36,7 +36,7 @@ class Report:
             before = self.worst.get(key)
             if before is None or (value.value < before[0] if value.at_least else value.value > before[0]):
                 self.worst[key] = (value.value, bound)
-        found = failures(row, method, seed, size, measured)
+        found = failures(row, method, seed, bench.size, bench.views, measured)
         self.failures += found
         return found
 
@@ -75,8 +75,8 @@ def stress(
                 return report
             measured = row.check(bench, method, np.random.default_rng([row.number, number]))
             if gpu.ctx.error != "GL_NO_ERROR":
-                report.failures.append(Failure(row.number, method, number, size, "OpenGL errors", 1.0, 0.0))
-            on_case(row, method, number, report.add(row, method, number, size, measured))
+                report.failures.append(Failure(row.number, method, number, size, views, "OpenGL errors", 1.0, 0.0))
+            on_case(row, method, number, report.add(row, method, number, bench, measured))
     finally:
         bench.release()
     return report

@@ -1,0 +1,58 @@
+"""The stress tool itself: it finds what is wrong, repeats it from its seed, and the cheap rows hold."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from dofview.errors import SettingsError
+from dofview.gl.context import Gpu
+from dofview.methods import METHODS
+from dofview.stress import shapes
+from dofview.stress.bench import Bench
+from dofview.stress.row import Measured, Row, bounds
+from dofview.stress.run import ROWS, chosen_rows, stress
+
+CHEAP = (1, 2, 4, 5, 13, 19)
+
+
+def test_every_bound_has_a_value(gpu: Gpu):
+    """A row measures as many values as it has bounds for; the reference stands for all methods."""
+    report = stress(gpu, methods=("accumulation",), size=48, views=16)
+    assert report.cases == sum("accumulation" in row.bounds for row in ROWS)
+
+
+def test_a_broken_bound_is_reported_with_the_command_that_repeats_it(gpu: Gpu):
+    seen: list[float] = []
+
+    def wrong(bench: Bench, method: str, random: np.random.Generator) -> list[Measured]:
+        seen.append(float(random.random()))
+        return [Measured("an error", seen[-1] + 1.0)]
+
+    row = Row(99, "broken", bounds(1.0), wrong)
+    report = stress(gpu, rows=(row,), methods=("accumulation",), seed=7, size=16, views=4, rounds=2)
+    assert report.cases == 2 and len(report.failures) == 2 and seen[0] != seen[1]
+    assert report.failures[0].command() == "dofview stress --row 99 --method accumulation --seed 7 --size 16 --views 4"
+    again = stress(gpu, rows=(row,), methods=("accumulation",), seed=7, size=16, views=4)
+    assert again.failures[0].value == report.failures[0].value
+
+
+def test_a_value_that_is_not_a_number_is_a_failure(gpu: Gpu):
+    row = Row(98, "nan", bounds(1.0), lambda bench, method, random: [Measured("nothing", float("nan"))])
+    assert stress(gpu, rows=(row,), methods=("pinhole", "accumulation"), size=16).failures
+
+
+def test_the_furnace_row_sees_a_scene_that_is_not_of_one_colour(gpu: Gpu, monkeypatch):
+    monkeypatch.setattr(shapes, "unlit", lambda rgb, name="": shapes.textured(np.random.default_rng(0)))
+    assert stress(gpu, rows=chosen_rows(1), methods=("accumulation",), size=32, views=8).failures
+
+
+@pytest.mark.parametrize("number", CHEAP)
+def test_the_cheap_rows_hold_for_every_method(gpu: Gpu, number: int):
+    report = stress(gpu, rows=chosen_rows(number), methods=METHODS, size=64, views=64)
+    assert not report.failures, "\n".join(map(str, report.failures))
+
+
+def test_an_unknown_row_is_refused():
+    with pytest.raises(SettingsError, match="no row 99; accepted: 1, 2"):
+        chosen_rows(99)
