@@ -8,6 +8,7 @@ from dofview.cli.chosen import applied, settings_for
 from dofview.cli.facts import screen
 from dofview.cli.flags import Given
 from dofview.errors import GLError
+from dofview.gl.context import REMEDY
 from dofview.scene.load import load
 from dofview.settings import Settings
 
@@ -24,4 +25,10 @@ def open_window(spec: str, given: Given, *, view: Path | None, method: str | Non
     settings = settings_for(scene, spec, given, view=view, method=method, camera=camera)
     from dofview import viewer
 
-    viewer.run(scene, settings, spec)
+    try:
+        viewer.run(scene, settings, spec)
+    except ModuleNotFoundError:
+        raise
+    except ImportError as error:
+        # The window's libraries are there but not what they are linked with: a machine without libGL or libX11.
+        raise GLError(f"cannot open a window ({error}); {REMEDY}") from error

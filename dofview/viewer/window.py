@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import time
+import warnings
 
 # isort: off
 from imgui_bundle import imgui
@@ -49,7 +50,11 @@ def run(scene: Scene, settings: Settings, *, size: tuple[int, int] = SIZE, title
 
 
 def _create(size: tuple[int, int], title: str) -> Window:
-    if not glfw.init():
+    with warnings.catch_warnings():
+        # What the library warns of is raised below, in one line.
+        warnings.simplefilter("ignore", glfw.GLFWError)
+        ready = glfw.init()
+    if not ready:
         raise GLError("cannot open a window: no display; use `dofview render` where there is no screen")
     version = (4, 1)
     for version in ((4, 1), (REQUIRED // 100, REQUIRED % 100 // 10)):
