@@ -34,7 +34,8 @@ class ImageFrame(Frame):
         return self._surfaces_given
 
     def depth_range(self) -> DepthRange:
-        return DepthRange(float(self._inverse_depth.max()), float(self._inverse_depth.min()), False)
+        least = float(self._inverse_depth.min())
+        return DepthRange(float(self._inverse_depth.max()), least, False, least)
 
 
 def point(size: tuple[int, int], at: tuple[int, int]) -> np.ndarray:

@@ -19,7 +19,7 @@ LAYERS = (
     ("errors", "data", "fields"),
     ("lens", "metrics", "focus"),
     ("scene",),
-    ("bokeh", "sampling"),
+    ("bokeh", "rings", "sampling"),
     ("gl",),
     ("render",),
     ("methods",),
