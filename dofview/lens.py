@@ -146,6 +146,41 @@ class Photographic(BaseModel):
         return cls(focal_length_mm=focal_length_mm, f_number=f_number, sensor_height_mm=sensor_height_mm)
 
 
+class HumanEye(BaseModel):
+    """An eye before a screen (Lee 2009 mipmap §8): what a picture must blur so that it looks as it would to the eye.
+
+    Its eq 3–4 give the CoC diameter on the screen, DPI · (d_s / d_r) · E·F·|d − d_f| / (d·(d_f − F)). Divided by the
+    focal length in pixels that a picture on this screen has for this eye, DPI · d_s, that is the thin lens of radius
+    ½·E·F / d_r, but for the factor d_f / (d_f − F), which is 1.02 at a metre.
+    """
+
+    model_config = ConfigDict(frozen=True, allow_inf_nan=False)
+
+    focal_length_mm: float = Field(default=17.0, gt=0.0, le=1e3, description="Focal length of the eye, F, mm.")
+    pupil_mm: float = Field(default=4.0, ge=0.0, le=1e3, description="Diameter of the pupil, E, mm.")
+    retina_mm: float = Field(default=24.0, gt=0.0, le=1e3, description="From the lens to the retina, d_r, mm.")
+    screen_distance_mm: float = Field(default=3000.0, gt=0.0, le=1e6, description="From eye to screen, d_s, mm.")
+    dots_per_mm: float = Field(default=0.32, gt=0.0, le=1e3, description="Pixels of the screen per mm, DPI.")
+
+    def radius(self, unit_m: float = 1.0) -> float:
+        """Lens radius in scene units of `unit_m` metres."""
+        return 0.5 * self.pupil_mm * self.focal_length_mm / self.retina_mm * 1e-3 / unit_m
+
+    def vfov_deg(self, height_px: float) -> float:
+        """Vertical field of view of a picture `height_px` high on this screen, degrees."""
+        return math.degrees(2.0 * math.atan(height_px / (2.0 * self.dots_per_mm * self.screen_distance_mm)))
+
+
+CAMERAS: dict[str, Photographic] = {
+    "Wide, 24 mm f/2.8": Photographic(focal_length_mm=24.0, f_number=2.8),
+    "Standard, 50 mm f/1.8": Photographic(focal_length_mm=50.0, f_number=1.8),
+    "Portrait, 85 mm f/1.4": Photographic(focal_length_mm=85.0, f_number=1.4),
+    "Tele, 200 mm f/2.8": Photographic(focal_length_mm=200.0, f_number=2.8),
+    "Telephone, 6.9 mm f/1.8": Photographic(focal_length_mm=6.9, f_number=1.8, sensor_height_mm=7.3),
+}
+"""Lenses to begin with, by name."""
+
+
 def hyperfocal_distance(lens: Lens, focal_px: float, blur_px: float = 0.5) -> float:
     """Nearest focus distance that keeps infinity within `blur_px` CoC radius, scene units: B / blur."""
     return lens.radius * focal_px / blur_px

@@ -20,6 +20,7 @@ from dofview.render.environment import Environment, Lighting
 from dofview.render.environment import load as load_environment
 from dofview.render.frame import Frame, FrameCache
 from dofview.render.guard import guard_band
+from dofview.render.pick import inverse_depth_at
 from dofview.render.reference import Quality, Reference
 from dofview.render.upload import GpuScene
 from dofview.scene.model import Scene
@@ -99,6 +100,10 @@ class Pipeline:
         quality = self.reference(settings, antialias=antialias).quality()
         reference = self.reference_picture(settings, antialias=antialias)
         return psnr(self.gpu, result.image, reference), quality
+
+    def inverse_depth(self, settings: Settings, x: float, y: float, radius: float = 0.0) -> float:
+        """Median of 1/z near a point of the picture (`render.pick`); draws nothing that the method draws anyway."""
+        return inverse_depth_at(self.frame(settings, guard=method(settings.method).GUARD_BAND), x, y, radius)
 
     def frame(self, settings: Settings, *, guard: bool) -> Frame:
         """The frame that a method renders from, with its guard band when it uses one."""
