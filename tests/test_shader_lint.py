@@ -13,6 +13,7 @@ from scenes import three_planes
 
 from dofview.data import SHADERS
 from dofview.gl.context import Gpu
+from dofview.gl.pyramids import Analysis, blur, pyramid
 from dofview.gl.shaders import ShaderLibrary, flatten
 from dofview.lens import Lens
 from dofview.methods import METHODS, method
@@ -62,6 +63,8 @@ def compiled(session_gpu: Gpu) -> dict[tuple[str, str], str]:
         pipeline.compare(result, settings)
         pipeline.render(settings.with_(light=Lighting(environment=STUDIO)))
         show(fresh, result.image, Display(), "shown")
+        for analysis in Analysis:
+            blur(fresh, pyramid(fresh, "levels", (64, 48), 3), analysis)
         pipeline.release()
     fresh.release()
     return found
