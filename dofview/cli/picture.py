@@ -5,18 +5,17 @@ from __future__ import annotations
 import json as jsonlib
 import statistics
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from dofview import export
+from dofview.bench.timing import timed
 from dofview.cli.chosen import applied, settings_for
 from dofview.cli.flags import Given
 from dofview.cli.runs import Timing
-from dofview.errors import GLError
 from dofview.gl.context import create_headless
-from dofview.pipeline import Pipeline, Result
+from dofview.pipeline import Pipeline
 from dofview.scene.load import load
 from dofview.scene.model import Scene
 from dofview.settings import Settings, checked
@@ -65,27 +64,6 @@ def headless(scene: Scene) -> Iterator[Pipeline]:
     finally:
         gpu.release()
         gpu.ctx.release()
-
-
-def timed(pipeline: Pipeline, settings: Settings, frames: int | None) -> tuple[Result, list[float]]:
-    """Render `frames` whole frames after a warm-up, or one without when None: the last picture, milliseconds of each.
-
-    Nothing is kept from one frame to the next, and each is waited for; reading back and writing is not in the time.
-    """
-    if frames is not None:
-        pipeline.render(settings)
-    milliseconds = []
-    for _ in range(frames or 1):
-        pipeline.forget()
-        pipeline.gpu.ctx.finish()
-        start = time.perf_counter()
-        result = pipeline.render(settings)
-        pipeline.gpu.ctx.finish()
-        milliseconds.append((time.perf_counter() - start) * 1e3)
-    complaint = pipeline.gpu.ctx.error
-    if complaint != "GL_NO_ERROR":
-        raise GLError(f"OpenGL reports {complaint} while rendering {settings.method}; a smaller picture may fit")
-    return result, milliseconds
 
 
 def tell_warnings(scene: Scene) -> None:
