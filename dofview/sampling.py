@@ -37,14 +37,14 @@ def lens_samples(lens: Lens, count: int, *, progressive: bool, start: int = 0, s
     `lens.rotation_deg`. A Gaussian is not cut off; a picture reaches to ±1 and, turned, to √2.
     """
     _check(count, start, progressive)
-    if lens.distribution is Distribution.IMAGE:
+    if lens.distribution == Distribution.IMAGE:
         square = _sobol_points((0, 1), count, start, seed) if progressive else _lattice(count, seed)
         return _turn(load(lens.image).place(square), lens.rotation_deg)
     if progressive:
         disc = concentric(_sobol_points((0, 1), count, start, seed))
         return _warp(disc, lens)
     points = _warp(spiral(count, seed), lens)
-    return points - points.mean(axis=0) if lens.distribution is Distribution.GAUSSIAN else points
+    return points - points.mean(axis=0) if lens.distribution == Distribution.GAUSSIAN else points
 
 
 def pixel_jitter(count: int, *, progressive: bool, start: int = 0, seed: int = 0) -> np.ndarray:
