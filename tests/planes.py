@@ -99,15 +99,14 @@ def pattern(seed: int, size: int) -> np.ndarray:
     """A smooth picture (size, size, 3) uint8 that is unlike all its mirrorings: soft noise and a bright F."""
     rng = np.random.default_rng(seed)
     frequency = np.fft.fftfreq(size)
-    low_pass = np.exp(-(np.add.outer(frequency**2, frequency**2)) / (2 * 0.06**2))
+    low_pass = np.exp(-(np.add.outer(frequency**2, frequency**2)) / (2 * 0.12**2))
     noise = np.stack(
         [np.fft.ifft2(np.fft.fft2(rng.standard_normal((size, size))) * low_pass).real for _ in range(3)], -1
     )
     letter = np.zeros((size, size))
     s = size // 8
     letter[s : 7 * s, 2 * s : 3 * s] = letter[s : 2 * s, 2 * s : 6 * s] = letter[3 * s : 4 * s, 2 * s : 5 * s] = 1.0
-    letter = np.fft.ifft2(np.fft.fft2(letter) * np.sqrt(low_pass)).real
-    value = 0.4 + 0.12 * noise / noise.std() + 0.35 * letter[..., None] * np.array([1.0, 0.8, 0.3])
+    value = 0.35 + 0.14 * noise / noise.std() + 0.5 * letter[..., None] * np.array([1.0, 0.8, 0.3])
     return np.round(np.clip(value, 0.02, 0.98) * 255).astype(np.uint8)
 
 

@@ -31,20 +31,22 @@ PINHOLE = Lens(radius=0.0, focus_distance=FOCUS)
 @pytest.fixture
 def draw(gpu: Gpu):
     """Render planes by accumulation, (height, width, 3) float64."""
-    pipelines: dict[int, Pipeline] = {}
+    pipelines: list[tuple[Planes, Pipeline]] = []
 
     def render(
         planes: Planes, lens: Lens, size: tuple[int, int] = SIZE, views: int = 1024, antialias: bool = True,
         progressive: bool = False,
     ) -> np.ndarray:  # fmt: skip
-        pipeline = pipelines.setdefault(id(planes), Pipeline(gpu, planes.scene))
+        if not pipelines or pipelines[-1][0] is not planes:
+            pipelines.append((planes, Pipeline(gpu, planes.scene)))
+        pipeline = pipelines[-1][1]
         settings = Settings(camera=planes.camera, lens=lens, method="accumulation", background_linear=(0, 0, 0))
         settings = settings.with_(image=settings.image.model_copy(update={"size": size}))
         settings = settings.with_params(views=views, antialias=antialias, progressive=progressive)
         return pipeline.render(settings).pixels().astype(np.float64)
 
     yield render
-    for pipeline in pipelines.values():
+    for _, pipeline in pipelines:
         pipeline.release()
 
 
@@ -89,7 +91,7 @@ def test_textured_planes(draw: Draw, planes: Planes, truth: np.ndarray, progress
 
 
 def test_the_comparison_can_fail(planes: Planes, truth: np.ndarray) -> None:
-    """Each thing that could be wrong costs far more than the bound: mirrors, half a pixel, 5 % of the lens, of focus."""
+    """What could be wrong costs more than the bound: mirrors, half a pixel, 5 % of the lens radius or of the focus."""
     assert max(psnr(truth[:, ::-1], truth), psnr(truth[::-1], truth), psnr(truth[::-1, ::-1], truth)) < 25.0
     assert psnr((truth + np.roll(truth, 1, axis=1)) / 2, truth) < 40.0
     for wrong in ({"radius": 0.42}, {"focus_distance": 3.15}):
@@ -140,7 +142,8 @@ def test_the_fit_of_pixel_centres_can_fail(planes: Planes) -> None:
 
 def test_the_plane_in_focus_stays_sharp(draw: Draw) -> None:
     """All of it, far off the axis too: the focus is a plane, not a sphere. Bound 45 dB."""
-    plane = facing(ROLLED, FOCUS, (-2.0, 1.3), (4.0, 2.6), pattern(2, 64))
+    noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
+    plane = facing(ROLLED, FOCUS, (-2.0, 1.3), (4.0, 2.6), noise)
     planes = build([plane], ROLLED, Lens(radius=0.6, focus_distance=FOCUS))
     sharp = draw(planes, PINHOLE, views=64)
     assert psnr(draw(planes, planes.lens, views=64), sharp) >= 60.0
@@ -165,39 +168,33 @@ def test_the_disc_of_a_point(draw: Draw, coc: float, antialias: bool) -> None:
     assert seen[..., 0].sum() == pytest.approx(1000.0, rel=0.01)
 
 
-def bokeh_of_a_point(draw: Draw, lens: Lens, coc: float) -> np.ndarray:
-    """(128, 128) light of a point at a CoC radius of `coc` px, its peak about 1."""
-    inverse_depth = float(lens.coc(focal_px(128, ROLLED.vfov_deg)).inverse_depth(coc))
-    return draw(point_scene(inverse_depth, radiance=np.pi * coc**2), lens, (128, 128))[..., 0]
-
-
 def test_the_aperture_is_upright_behind_the_focus_and_turned_before_it(draw: Draw) -> None:
-    """Centred on pixel (68, 56); correlation with the aperture's own picture ≥ 0.9, also between near and far."""
+    """A point's picture against the aperture's own, and near against far: correlation ≥ 0.9; measured 0.96 and 0.99."""
     lens = Lens(radius=0.5, focus_distance=FOCUS, distribution="image", image="heart")
-    far, near = (bokeh_of_a_point(draw, lens, coc)[36:77, 48:89] for coc in (16.0, -16.0))
-    heart = np.asarray(Image.fromarray(bokeh.load("heart").weights).resize((32, 32), Image.Resampling.BOX))
-    shape = np.pad(heart, ((4, 5), (4, 5)))
+    law = lens.coc(focal_px(128, ROLLED.vfov_deg))
+    far, near = (
+        draw(point_scene(float(law.inverse_depth(coc))), lens, (128, 128), views=4096)[44:69, 56:81, 0]
+        for coc in (10.5, -10.5)
+    )
+    heart = np.asarray(Image.fromarray(bokeh.load("heart").weights).resize((21, 21), Image.Resampling.BOX))
+    shape = np.pad(heart, 2)
 
     def correlation(a: np.ndarray, b: np.ndarray) -> float:
         return float(np.corrcoef(a.ravel(), b.ravel())[0, 1])
 
-    assert correlation(far, shape) > 0.9 > correlation(far[::-1], shape)
-    assert correlation(near[::-1, ::-1], far) > 0.95
-    assert correlation(near, far) < 0.9
+    print(correlation(far, shape), correlation(near[::-1, ::-1], far), correlation(far[::-1], shape))
+    assert correlation(far, shape) >= 0.9 > correlation(far[::-1], shape)
+    assert correlation(near[::-1, ::-1], far) >= 0.9 > correlation(near, far)
 
 
-def test_brightness_and_size_of_an_aperture_picture_do_not_matter(draw: Draw, tmp_path: Path) -> None:
+def test_brightness_and_size_of_an_aperture_picture_do_not_matter(draw: Draw, planes: Planes, tmp_path: Path) -> None:
     """A tenth of the brightness: within 1/255; 64² instead of 1024²: within 2/255."""
-    names = {}
+    seen = {}
     for name, size, bright in (("full", 1024, 65000), ("tenth", 1024, 6500), ("small", 64, 65000)):
         shape = bokeh.draw(name, bokeh.SHAPES["heart"], size).weights
-        names[name] = tmp_path / f"{name}.png"
-        Image.fromarray(np.round(shape / shape.max() * bright).astype(np.uint16)).save(names[name])
-    lens = Lens(radius=0.5, focus_distance=FOCUS, distribution="image")
-    seen = {
-        name: srgb_encode(bokeh_of_a_point(draw, lens.model_copy(update={"image": path}), 16.0) / 2)
-        for name, path in names.items()
-    }
+        Image.fromarray(np.round(shape / shape.max() * bright).astype(np.uint16)).save(tmp_path / f"{name}.png")
+        lens = Lens(radius=0.4, focus_distance=FOCUS, distribution="image", image=tmp_path / f"{name}.png")
+        seen[name] = srgb_encode(draw(planes, lens))
     assert np.abs(seen["tenth"] - seen["full"]).max() <= 1 / 255
     assert np.abs(seen["small"] - seen["full"]).max() <= 2 / 255
 
