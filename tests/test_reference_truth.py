@@ -84,7 +84,7 @@ def centroid_and_covariance(picture: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 @pytest.mark.parametrize("progressive", [False, True], ids=["spiral", "sobol"])
 def test_textured_planes(draw: Draw, planes: Planes, truth: np.ndarray, progressive: bool) -> None:
-    """Measured 67 dB with a ray caster of 1,600 rays, itself 66 dB from one of 4,096."""
+    """Measured 59 dB, which is the ray caster's own noise with 1,600 rays; 66 dB from one of 8,192."""
     seen = draw(planes, planes.lens, progressive=progressive)
     assert psnr(seen, truth) >= 50.0
     assert np.abs((seen - truth).mean(axis=(0, 1))).max() < 2e-4, "no bias"
@@ -108,15 +108,18 @@ def test_the_comparison_can_fail(planes: Planes, truth: np.ndarray) -> None:
     ids=lambda lens: str(lens.distribution),
 )
 def test_other_apertures(draw: Draw, planes: Planes, truth: np.ndarray, lens: Lens) -> None:
-    """Measured 58 to 61 dB; all are told apart from the disc."""
-    expected = planes.truth(*SIZE, lens)
+    """Measured 54 to 58 dB, the noise of the ray caster; all are told apart from the disc."""
+    expected = planes.truth(*SIZE, lens, lens_grid=40)
     assert psnr(draw(planes, lens), expected) >= 50.0
     assert psnr(expected, truth) < 48.0
 
 
 @pytest.mark.parametrize("size", [(96, 64), (40, 100), (51, 33)])
 def test_field_of_view_and_pixel_centres(draw: Draw, planes: Planes, size: tuple[int, int]) -> None:
-    """Vertical field of view at any aspect; shift, scale and shear fitted to the difference stay below 0.02 px."""
+    """Vertical field of view at any aspect; shift, scale and shear fitted to the difference stay below 0.02 px.
+
+    Measured 0.0003 px; no smooth pixel differs by more than 0.0003.
+    """
     seen = draw(planes, PINHOLE, size, views=1, antialias=False)
     expected = planes.truth(*size, PINHOLE, lens_grid=1, antialias=False)
     gradient_y, gradient_x = np.gradient(expected, axis=(0, 1))
@@ -141,7 +144,7 @@ def test_the_fit_of_pixel_centres_can_fail(planes: Planes) -> None:
 
 
 def test_the_plane_in_focus_stays_sharp(draw: Draw) -> None:
-    """All of it, far off the axis too: the focus is a plane, not a sphere. Bound 45 dB."""
+    """All of it, far off the axis too: the focus is a plane, not a sphere. Bound 45 dB; measured 116 and 100."""
     noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
     plane = facing(ROLLED, FOCUS, (-2.0, 1.3), (4.0, 2.6), noise)
     planes = build([plane], ROLLED, Lens(radius=0.6, focus_distance=FOCUS))
@@ -155,7 +158,10 @@ def test_the_plane_in_focus_stays_sharp(draw: Draw) -> None:
 @pytest.mark.parametrize("coc", [-20.0, -8.0, -3.0, 3.0, 8.0, 16.0])
 @pytest.mark.parametrize("antialias", [True, False])
 def test_the_disc_of_a_point(draw: Draw, coc: float, antialias: bool) -> None:
-    """Radius √(2⟨r²⟩) is |c| to 2 % and the place is the pinhole's to 0.25 px; no light is lost or won beyond 1 %."""
+    """Radius √(2⟨r²⟩) is |c| to 2 % and the place is the pinhole's to 0.25 px; no light is lost or won beyond 1 %.
+
+    Measured 0.6 %, 0.012 px, 0 %.
+    """
     lens = Lens(radius=0.5, focus_distance=FOCUS)
     point = point_scene(float(lens.coc(focal_px(128, ROLLED.vfov_deg)).inverse_depth(coc)))
     seen = draw(point, lens, (128, 128), antialias=antialias)
@@ -169,7 +175,7 @@ def test_the_disc_of_a_point(draw: Draw, coc: float, antialias: bool) -> None:
 
 
 def test_the_aperture_is_upright_behind_the_focus_and_turned_before_it(draw: Draw) -> None:
-    """A point's picture against the aperture's own, and near against far: correlation ≥ 0.9; measured 0.96 and 0.99."""
+    """A point's picture against the aperture's own, and near against far: correlation ≥ 0.9; measured 0.98 and 0.97."""
     lens = Lens(radius=0.5, focus_distance=FOCUS, distribution="image", image="heart")
     law = lens.coc(focal_px(128, ROLLED.vfov_deg))
     far, near = (
@@ -182,7 +188,6 @@ def test_the_aperture_is_upright_behind_the_focus_and_turned_before_it(draw: Dra
     def correlation(a: np.ndarray, b: np.ndarray) -> float:
         return float(np.corrcoef(a.ravel(), b.ravel())[0, 1])
 
-    print(correlation(far, shape), correlation(near[::-1, ::-1], far), correlation(far[::-1], shape))
     assert correlation(far, shape) >= 0.9 > correlation(far[::-1], shape)
     assert correlation(near[::-1, ::-1], far) >= 0.9 > correlation(near, far)
 
