@@ -30,6 +30,7 @@ class Folder:
         self.root = Path(os.path.realpath(root))
         self.account = account
         self._read: dict[Path, tuple[int, int]] = {}
+        self._contents: dict[Path, bytes] = {}
 
     def read_model(self, path: Path) -> bytes:
         """Read the model file itself, wherever it is."""
@@ -45,7 +46,10 @@ class Folder:
 
     def read_relative(self, name: str, start: Path | None = None) -> bytes:
         """Read the file `name`, relative to `start` (default: this folder), with the separators of both systems."""
-        return self._read_regular(self.find(name, start), f"'{one_line(name, 80)}'")
+        path = self.find(name, start)
+        if path not in self._contents:  # named a thousand times, it is read and held once
+            self._contents[path] = self._read_regular(path, f"'{one_line(name, 80)}'")
+        return self._contents[path]
 
     def find(self, name: str, start: Path | None = None) -> Path:
         """Resolve `name` inside this folder; ModelError when it leads out of it. It need not exist."""

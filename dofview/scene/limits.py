@@ -36,9 +36,12 @@ class Account:
         self.limits = limits
         self.pixels = self.triangles = self.draws = self.bytes = self.geometry = 0
 
-    def charge_picture(self, width: int, height: int) -> None:
-        """Charge a picture before it is decoded; a picture that then fails stays charged, so that failing costs too."""
-        each, total = self.limits.picture_pixels, self.limits.total_pixels
+    def charge_picture(self, width: int, height: int, memory: int = 1) -> None:
+        """Charge a picture before it is decoded; a picture that then fails stays charged, so that failing costs too.
+
+        `memory` is how many times the usual its decoder needs; the cap on one picture falls by as much.
+        """
+        each, total = self.limits.picture_pixels // memory, self.limits.total_pixels
         if width * height > each:
             raise ModelError(f"has {width}x{height} pixels; accepted: up to {each} (limit picture_pixels)")
         if self.pixels + width * height > total:

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from dofview.errors import InputError, ModelError
+from dofview.errors import ModelError
 from dofview.scene.files import Folder
 from dofview.scene.limits import Account, Limits
 from dofview.scene.model import Scene
@@ -63,10 +63,7 @@ def load(spec: str | Path, limits: Limits | None = None) -> Scene:
     if text.startswith(DEMO):
         from dofview.scene import demo
 
-        try:
-            return demo.build(text[len(DEMO) :])
-        except InputError as error:
-            raise ModelError(str(error)) from error
+        return demo.build(text[len(DEMO) :])
     path = Path(spec)
     try:
         return _load_stable(path, limits or Limits())

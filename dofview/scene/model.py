@@ -152,8 +152,8 @@ def instance_bounds(primitive: Primitive, matrix: np.ndarray) -> np.ndarray | No
     """(2, 3) float64 corners of the primitive's box carried through `matrix`; None when it has no triangles."""
     if len(primitive.positions) == 0 or len(primitive.triangles) == 0:
         return None
-    box = primitive.box
-    center, half = box.mean(axis=0), (box[1] - box[0]) / 2
+    low, high = primitive.box
+    center, half = (low + high) / 2, (high - low) / 2
     world_center = matrix[:3, :3] @ center + matrix[:3, 3]
     world_half = np.abs(matrix[:3, :3]) @ half
     return np.array([world_center - world_half, world_center + world_half])

@@ -1,4 +1,4 @@
-"""Face and vertex normals in numpy, float64 inside so that neither tiny nor huge models under- or overflow."""
+"""Face and vertex normals in numpy, in float64: the squares of anything from 1e-38 to 1e18 fit in there."""
 
 from __future__ import annotations
 
@@ -8,11 +8,16 @@ BATCH = 100_000  # triangles at a time, so that the float64 temporaries of a lar
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:
-    """Scale (n, 3) vectors to unit length, zero where they have none."""
-    largest = np.abs(vectors).max(axis=-1, keepdims=True, initial=0.0)
-    scaled = np.divide(vectors, largest, out=np.zeros_like(vectors), where=largest > 0)
-    length = np.linalg.norm(scaled, axis=-1, keepdims=True)
-    return np.divide(scaled, length, out=np.zeros_like(scaled), where=length > 0)
+    """(…, 3) float64 of unit length, zero where `vectors` have none."""
+    vectors = vectors.astype(np.float64, copy=False)
+    length = np.sqrt(np.einsum("...i,...i->...", vectors, vectors))[..., None]
+    return np.divide(vectors, length, out=np.zeros(vectors.shape), where=length > 0)
+
+
+def cross(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(…, 3) cross product; for the thousands of tiny arrays of some files, numpy's own is ten times slower."""
+    ahead, behind = [1, 2, 0], [2, 0, 1]
+    return first[..., ahead] * second[..., behind] - first[..., behind] * second[..., ahead]
 
 
 def face_normals(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -47,7 +52,7 @@ def smooth_normals(positions: np.ndarray, triangles: np.ndarray, keys: np.ndarra
 
 def _normals_of(corners: np.ndarray) -> np.ndarray:
     """(m, 3) unit normals of triangles given as (m, 3, 3) corners, zero for those without area."""
-    return unit(np.cross(unit(corners[:, 1] - corners[:, 0]), unit(corners[:, 2] - corners[:, 0])))
+    return unit(cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
 
 
 def _or_z(normals: np.ndarray) -> np.ndarray:

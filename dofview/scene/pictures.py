@@ -20,6 +20,7 @@ from dofview.scene.model import Picture
 
 ACCEPTED = "PNG, JPEG, WebP, BMP or TGA"
 MOST_SCAN_PIXELS = 2_000 * MEGA  # progressive JPEG: scans times pixels, about the work of ten seconds
+WEBP_MEMORY = 3  # its decoder holds two canvases and a copy besides the picture: 16 bytes a pixel, measured
 _PNG = b"\x89PNG\r\n\x1a\n"
 _MOST_CHUNKS = 50_000
 _PNG_CHUNKS = {b"IHDR", b"PLTE", b"tRNS", b"IDAT", b"IEND"}
@@ -41,7 +42,7 @@ def open_picture(data: bytes | memoryview, account: Account, suffix: str = ""):
     with _one_error_class():
         image = _open(data, suffix)
         width, height = image.size
-        account.charge_picture(width, height)
+        account.charge_picture(width, height, WEBP_MEMORY if image.format == "WEBP" else 1)
         _check_scans(data, width * height)
         image.load()
         return image

@@ -31,7 +31,7 @@ class Accessors:
     def __init__(self, document: Document, folder: Folder, notes: Notes) -> None:
         self._document, self._folder, self._notes = document, folder, notes
         self._buffers: dict[int, memoryview] = {}
-        self._sparse: dict[int, np.ndarray] = {}
+        self._decoded: dict[int, tuple[np.ndarray, bool]] = {}
 
     def fields(self, owner: Fields, key: str) -> tuple[int, Fields]:
         """The accessor that `owner` refers to under `key`."""
@@ -46,18 +46,24 @@ class Accessors:
     def elements(self, owner: Fields, key: str, widths: tuple[int, ...]) -> tuple[np.ndarray, bool]:
         """(count, width) array in the file's own component type, and whether integers are normalised."""
         index, accessor = self.fields(owner, key)
+        if index not in self._decoded:
+            self._decoded[index] = self._decode(accessor)
+        values, normalized = self._decoded[index]
+        if values.shape[1] not in widths:
+            raise accessor.fail("type", " or ".join(name for name, width in WIDTHS.items() if width in widths))
+        return values, normalized
+
+    def _decode(self, accessor: Fields) -> tuple[np.ndarray, bool]:
         dtype = COMPONENTS.get(accessor.integer("componentType"))
         if dtype is None:
             raise accessor.fail("componentType", ", ".join(map(str, COMPONENTS)))
         width = WIDTHS.get(accessor.text("type"))
-        if width not in widths:
-            raise accessor.fail("type", " or ".join(name for name, w in WIDTHS.items() if w in widths))
+        if width is None:
+            raise accessor.fail("type", " or ".join(WIDTHS))
         normalized = accessor.flag("normalized") and dtype.kind != "f"
         if accessor.data.get("sparse") is None:
             return self._dense(accessor, accessor.integer("count"), dtype, width), normalized
-        if index not in self._sparse:
-            self._sparse[index] = self._substituted(accessor, dtype, width)
-        return self._sparse[index], normalized
+        return self._substituted(accessor, dtype, width), normalized
 
     def view_bytes(self, index: int) -> memoryview:
         """The bytes of a buffer view."""

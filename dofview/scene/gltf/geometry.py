@@ -51,7 +51,11 @@ class Geometry:
             raise ModelError(
                 f"{fields.where}.indices goes up to {int(corners.max())}; there are {source.count} vertices"
             )
-        triangles = assemble(corners, fields.integer("mode", TRIANGLES, high=6))
+        # Draco data is a list of triangles whatever the mode says.
+        mode = TRIANGLES if source.compressed else fields.integer("mode", TRIANGLES, high=6)
+        triangles = assemble(corners, mode)
+        if source.compressed:
+            self.account.charge_triangles(max(len(triangles) - self.triangle_count(fields), 0))
         rows, local = used_rows(triangles)
         positions = self._positions(fields, source, rows, weights)
         lost = ~(np.abs(positions) <= LARGEST).all(axis=1)
@@ -104,6 +108,7 @@ class Geometry:
             values, normalized = self.accessors.elements(target, name, (3,))
             if len(values) != count:
                 raise ModelError(f"{target.where}.{name} has {len(values)} elements; there are {count} vertices")
+            self.account.charge_geometry(base.nbytes)
             with np.errstate(over="ignore", invalid="ignore"):
                 base = (base + weight * to_float(values[rows], normalized)).astype(np.float32)
         return base
@@ -115,7 +120,7 @@ class Geometry:
             self._floats(source, "NORMAL", (3,), rows), "NORMAL", fields, rows, weights, source.count
         )
         usable = (np.abs(normals) <= LARGEST).all(axis=1)
-        normals = unit(np.where(usable[:, None], normals, np.float32(0)))
+        normals = unit(np.where(usable[:, None], normals, np.float32(0))).astype(np.float32)
         missing = ~normals.any(axis=1)
         if missing.any():
             self.notes.count("normal", "normals", "without a direction replaced", int(missing.sum()))

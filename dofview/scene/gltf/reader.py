@@ -19,6 +19,7 @@ from dofview.scene.model import Instance, Material, Primitive, Scene, SceneCamer
 from dofview.scene.notes import Notes
 from dofview.scene.repair import LARGEST
 
+MOST_CAMERAS = 1000
 _MORPHS = ("primitive with morph targets", "primitives with morph targets", "shown at the default weights")
 
 
@@ -32,6 +33,8 @@ class SceneReader:
         self._materials = Materials(document, accessors, folder, self._notes)
         self._primitives: list[Primitive] = []
         self._places: dict[tuple[int, int, tuple[float, ...]], int | None] = {}
+        self._counts: dict[int, list[int]] = {}
+        self._drawable: dict[int, list[tuple[int, Fields, int]]] = {}
         self._instances: list[Instance] = []
         self._cameras: list[SceneCamera] = []
 
@@ -57,13 +60,21 @@ class SceneReader:
         total = 0
         for index in range(len(self._document.list("meshes"))):
             with suppress(ModelError):  # a mesh that nothing shows may be as broken as it likes
-                primitives = self._document.entry("meshes", index).objects("primitives")
-                total += sum(map(self._geometry.triangle_count, primitives))
+                total += sum(self._triangle_counts(index))
         return total
+
+    def _triangle_counts(self, mesh: int) -> list[int]:
+        """The triangles that each primitive of a mesh declares."""
+        if mesh not in self._counts:
+            primitives = self._document.entry("meshes", mesh).objects("primitives")
+            self._counts[mesh] = list(map(self._geometry.triangle_count, primitives))
+        return self._counts[mesh]
 
     def _add_camera(self, node: Fields, world: np.ndarray) -> None:
         index = self._document.reference(node, "camera", "cameras")
-        if index is not None:
+        if index is not None and len(self._cameras) >= MOST_CAMERAS:
+            self._notes.say(f"more than {MOST_CAMERAS} cameras; the others not offered")
+        elif index is not None:
             made = nodes.camera(self._document.entry("cameras", index), world, self._notes)
             self._cameras.extend([made] if made else [])
 
@@ -73,11 +84,9 @@ class SceneReader:
             return
         mesh = self._document.entry("meshes", index)
         weights = _weights(node) or _weights(mesh)
-        for number, fields in enumerate(mesh.objects("primitives")):
-            triangles = self._geometry.triangle_count(fields)
-            if triangles == 0 or not has_positions(fields):
-                self._note_left_out(fields)
-                continue
+        if index not in self._drawable:
+            self._drawable[index] = self._drawable_of(mesh, self._triangle_counts(index))
+        for number, fields, triangles in self._drawable[index]:
             self._account.charge_draw(triangles)
             key = (index, number, weights)
             if key not in self._places:
@@ -85,6 +94,16 @@ class SceneReader:
             place = self._places[key]
             if place is not None:
                 self._place(place, world)
+
+    def _drawable_of(self, mesh: Fields, counts: list[int]) -> list[tuple[int, Fields, int]]:
+        """Number, fields and triangle count of the primitives that can be drawn; the others are noted."""
+        found = []
+        for number, (fields, triangles) in enumerate(zip(mesh.objects("primitives"), counts, strict=True)):
+            if triangles and has_positions(fields):
+                found.append((number, fields, triangles))
+            else:
+                self._note_left_out(fields)
+        return found
 
     def _decode(self, fields: Fields, weights: tuple[float, ...], name: str) -> int | None:
         slot = self._materials.slot(fields)

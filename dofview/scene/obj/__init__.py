@@ -24,12 +24,14 @@ from dofview.scene.obj.statements import scan
 def read(data: bytes, name: str, folder: Folder) -> Scene:
     """Read the bytes of an .obj file whose libraries and textures are taken in `folder`; ModelError says why not."""
     notes = Notes()
-    made = scan(data, notes)
-    triangles = triangles_of(made, folder.account, notes)
+    made = scan(data, folder.account, notes)
+    triangles = triangles_of(made, notes)
     materials = Materials(folder, notes)
     materials.read_libraries(made.libraries)
     slots = slots_of(made, triangles, materials.slot)
-    origin = origin_for(made.positions[triangles.corners[..., 0].ravel()])
+    used = np.zeros(len(made.positions), bool)
+    used[triangles.place] = True
+    origin = origin_for(made.positions[used])
     parts = []
     for part in primitives(made, triangles, slots, origin, notes):
         folder.account.charge_draw(0)  # its triangles are charged already

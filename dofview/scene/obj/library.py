@@ -12,6 +12,7 @@ MAPS_LEFT_OUT = (
     "map_Ka", "map_Ks", "map_Ns", "map_Bump", "map_bump", "bump", "disp", "decal", "refl", "map_Ps", "map_refl",
     "map_aat", "map_Disp", "map_disp",
 )  # fmt: skip
+LONGEST_MAP = 4096
 _NUMBER_OPTIONS = {"-boost": 1, "-texres": 1, "-bm": 1, "-mm": 2, "-o": 3, "-s": 3, "-t": 3}
 _WORD_OPTIONS = ("-blendu", "-blendv", "-cc", "-clamp", "-imfchan", "-type", "-colorspace")
 
@@ -49,6 +50,8 @@ def parse(data: bytes, notes: Notes) -> dict[str, Entry]:
             continue
         elif entry is None:
             notes.count("line", "lines", "before the first newmtl ignored")
+        elif keyword in MAPS and len(rest) > LONGEST_MAP:
+            notes.say(f"material '{one_line(entry.name, 80)}': {keyword} of {len(rest)} characters not read")
         elif keyword in MAPS:
             entry.maps[keyword] = parse_map(rest)
         elif keyword in MAPS_LEFT_OUT:

@@ -8,7 +8,6 @@ left out with a warning, as in glTF.
 from __future__ import annotations
 
 import os
-import re
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
@@ -22,6 +21,8 @@ from dofview.scene.notes import Notes, one_line
 from dofview.scene.obj import library
 from dofview.scene.obj.library import Entry, MapReference
 from dofview.scene.repair import BRIGHTEST
+
+MOST_LIBRARIES = 1000
 
 
 @dataclass
@@ -37,24 +38,35 @@ class Materials:
 
     def read_libraries(self, statements: list[str]) -> None:
         """Read all `mtllib` statements; a missing library is a warning, as its faces can be shown without."""
-        for statement in dict.fromkeys(statements):
-            for name in self._library_names(statement):
-                try:
-                    path = self.folder.find(name)
+        read: set[Path] = set()
+        names = dict.fromkeys(name for statement in dict.fromkeys(statements) for name in self._names_in(statement))
+        if len(names) > MOST_LIBRARIES:
+            self.notes.say(f"{len(names)} material libraries named; only the first {MOST_LIBRARIES} read")
+        for name in list(names)[:MOST_LIBRARIES]:
+            try:
+                path = self.folder.find(name)
+                if path not in read:
+                    read.add(path)
                     data = self.folder.read_relative(name)
-                except ModelError as error:
-                    self.notes.say(f"material library {error}")
-                    continue
-                for key, entry in library.parse(data, self.notes).items():
-                    self._entries.setdefault(key, (entry, path.parent))
+                    for key, entry in library.parse(data, self.notes).items():
+                        self._entries.setdefault(key, (entry, path.parent))
+            except ModelError as error:
+                self.notes.say(f"material library {error}")
 
-    def _library_names(self, statement: str) -> list[str]:
+    def _names_in(self, statement: str) -> list[str]:
         """The whole statement when there is such a file, else each part that ends in .mtl: names may hold spaces."""
         try:
-            whole = os.path.isfile(self.folder.find(statement))
+            if os.path.isfile(self.folder.find(statement)):
+                return [statement]
         except ModelError:
-            whole = False
-        return [statement] if whole else re.findall(r"(?i)\S.*?\.mtl(?=\s|$)", statement) or [statement]
+            pass
+        names, words = [], []
+        for word in statement.split(" "):
+            words.append(word)
+            if word.lower().endswith(".mtl"):
+                names.append(" ".join(words))
+                words = []
+        return names or [statement]
 
     def slot(self, name: str | None) -> int:
         """The place in `made` of the material called `name`; None and unknown names are plain white."""

@@ -7,54 +7,66 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dofview.scene.limits import Account
 from dofview.scene.model import Primitive
 from dofview.scene.normals import smooth_normals, unit
 from dofview.scene.notes import Notes
+from dofview.scene.obj.lines import MISSING
 from dofview.scene.obj.polygons import triangulate
-from dofview.scene.obj.statements import MISSING, Statements
+from dofview.scene.obj.statements import Statements
 from dofview.scene.repair import LARGEST, repaired_colors, repaired_texcoords, used_rows
 
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """All triangles of a file: `corners` (t, 3, 3) of position, texcoord and normal indices, checked; `faces` (t,)."""
+    """All triangles of a file: indices (t, 3) of their corners, checked, MISSING where there is none; the face (t,)."""
 
-    corners: np.ndarray
+    place: np.ndarray
+    texcoord: np.ndarray
+    normal: np.ndarray
     faces: np.ndarray
 
 
-def triangles_of(made: Statements, account: Account, notes: Notes) -> Triangles:
+def triangles_of(made: Statements, notes: Notes) -> Triangles:
     """Drop the faces that cannot be drawn, with notes, and cut the others into triangles."""
-    corners, counts = made.corners, made.counts
-    account.charge_triangles(int(np.maximum(counts - 2, 0).sum()))
-    for column, table in ((1, made.texcoords), (2, made.normals)):
-        wrong = corners[:, column] >= len(table)
-        notes.count("corner", "corners", "with a texture or normal index out of range", int(wrong.sum()))
-        corners[wrong, column] = MISSING
-    kept = _drawable(made, notes)
-    corners = corners[np.repeat(kept, counts)]
-    rows, owners = triangulate(made.positions[corners[:, 0]], counts[kept], notes)
-    return Triangles(corners[rows], np.flatnonzero(kept)[owners])
+    place, texcoord, normal = made.corners
+    texcoord = _in_range(texcoord, len(made.texcoords), notes)
+    normal = _in_range(normal, len(made.normals), notes)
+    kept, counts = _drawable(made, notes), made.counts
+    if not kept.all():
+        corners = np.repeat(kept, counts)
+        place, texcoord, normal, counts = place[corners], texcoord[corners], normal[corners], counts[kept]
+    rows, owners = triangulate(made.positions, place, counts, notes)
+    if not kept.all():
+        owners = np.flatnonzero(kept)[owners]
+    columns = (c[rows] if c.strides[0] else np.broadcast_to(c[:1], rows.shape) for c in (place, texcoord, normal))
+    return Triangles(*columns, owners) if len(rows) else Triangles(rows, rows, rows, owners)
+
+
+def _in_range(indices: np.ndarray, count: int, notes: Notes) -> np.ndarray:
+    wrong = indices >= count
+    if not wrong.any():
+        return indices
+    notes.count("corner", "corners", "with a texture or normal index out of range", int(wrong.sum()))
+    return np.where(wrong, np.int32(MISSING), indices)
 
 
 def _drawable(made: Statements, notes: Notes) -> np.ndarray:
     """(f,) bool: faces of at least three corners, all of them at finite positions that exist."""
-    place, counts = made.corners[:, 0], made.counts
+    place, ends = made.corners[0], np.cumsum(made.counts)
     outside = (place < 0) | (place >= len(made.positions))
-    lost = ~(np.abs(made.positions) <= LARGEST).all(axis=1)
-    nowhere = np.zeros(len(place), bool)
-    nowhere[~outside] = lost[place[~outside]]
-    face_of = np.repeat(np.arange(len(counts)), counts)
-    kept = np.ones(len(counts), bool)
-    for bad, reason in (
-        (np.bincount(face_of[outside], minlength=len(counts)) > 0, "with a vertex index out of range left out"),
-        (np.bincount(face_of[nowhere], minlength=len(counts)) > 0, "with NaN or infinite positions left out"),
-        (counts < 3, "of fewer than three corners left out"),
+    lost = np.append(~(np.abs(made.positions) <= LARGEST).all(axis=1), False)
+    nowhere = lost[np.where(outside, len(lost) - 1, place)] if lost.any() else np.zeros(0, bool)
+    kept = np.ones(len(made.counts), bool)
+    for corners, reason in (
+        (outside, "with a vertex index out of range left out"),
+        (nowhere, "with NaN or infinite positions left out"),
     ):
-        notes.count("face", "faces", reason, int((kept & bad).sum()))
-        kept &= ~bad
-    return kept
+        faces = np.unique(np.searchsorted(ends, np.flatnonzero(corners), side="right"))
+        notes.count("face", "faces", reason, int(kept[faces].sum()))
+        kept[faces] = False
+    few = kept & (made.counts < 3)
+    notes.count("face", "faces", "of fewer than three corners left out", int(few.sum()))
+    return kept & ~few
 
 
 def slots_of(made: Statements, triangles: Triangles, slot: Callable[[str | None], int]) -> np.ndarray:
@@ -80,14 +92,11 @@ def primitives(
     if len(triangles.faces) == 0:
         return
     shading, computed = _shading_normals(made, triangles)
-    vertices, ids = _weld(np.concatenate([triangles.corners.reshape(-1, 3), shading.reshape(-1, 1)], axis=1))
+    vertices, ids = _weld(*(c.ravel() for c in (triangles.place, triangles.texcoord, triangles.normal, shading)))
     ids = ids.reshape(-1, 3)
-    slot_of = slots[triangles.faces]
-    order = np.argsort(slot_of, kind="stable")
-    used, firsts = np.unique(slot_of[order], return_index=True)
-    for slot, rows in zip(used.tolist(), np.split(order, firsts[1:]), strict=True):
+    for slot, rows in _by_value(slots[triangles.faces]):
         selected, local = used_rows(ids[rows])
-        place, texcoord, normal, shade = vertices[selected].T
+        place, texcoord, normal, shade = (column[selected] for column in vertices)
         with np.errstate(over="ignore", invalid="ignore"):
             yield Primitive(
                 positions=(made.positions[place] - origin).astype(np.float32),
@@ -99,26 +108,35 @@ def primitives(
             )
 
 
+def _by_value(values: np.ndarray) -> Iterator[tuple[int, slice | np.ndarray]]:
+    """Each distinct value with the rows that have it."""
+    if (values == values[0]).all():
+        yield int(values[0]), slice(None)
+        return
+    order = np.argsort(values, kind="stable")
+    distinct, firsts = np.unique(values[order], return_index=True)
+    yield from zip(distinct.tolist(), np.split(order, firsts[1:]), strict=True)
+
+
 def _shading_normals(made: Statements, triangles: Triangles) -> tuple[np.ndarray, np.ndarray]:
     """Work out normals where the file has no usable one.
 
     Returns for each corner (t, 3) the row of its computed normal, MISSING where the file's own is used; and those
     normals.
     """
-    given = triangles.corners[..., 2]
     usable = np.append((np.abs(made.normals) <= LARGEST).all(axis=1) & made.normals.any(axis=1), False)
-    wanted = ~usable[given]  # MISSING is the last row
+    wanted = ~usable[triangles.normal]  # MISSING is the last row
     if not wanted.any():
-        return np.full(given.shape, MISSING), np.zeros((0, 3), np.float32)
-    keys = triangles.corners[..., 0].astype(np.int64)
+        return np.broadcast_to(np.int32(MISSING), wanted.shape), np.zeros((0, 3), np.float32)
+    keys = triangles.place
     if made.smoothing:
         group = _spread(made.smoothing, len(made.counts), 1)[triangles.faces]
-        keys = keys * (int(group.max(initial=0)) + 1) + group[:, None]
+        keys = keys.astype(np.int64) * (int(group.max()) + 1) + group[:, None]
         flat = group == 0
-        keys[flat] = int(keys.max(initial=0)) + 1 + triangles.faces[flat, None]
-        keys = np.unique(keys, return_inverse=True)[1].reshape(-1, 3)
-    computed = smooth_normals(made.positions, triangles.corners[..., 0], keys)
-    return np.where(wanted, keys, MISSING), computed
+        keys[flat] = int(keys.max()) + 1 + triangles.faces[flat, None]
+        keys = np.unique(keys, return_inverse=True)[1].reshape(-1, 3).astype(np.int32)
+    computed = smooth_normals(made.positions, triangles.place, keys)
+    return (keys if wanted.all() else np.where(wanted, keys, np.int32(MISSING))), computed
 
 
 def _spread(switches: list[tuple[int, int]], count: int, before: int) -> np.ndarray:
@@ -127,22 +145,23 @@ def _spread(switches: list[tuple[int, int]], count: int, before: int) -> np.ndar
     return np.repeat(np.array([before, *(value for _, value in switches)], np.int64), np.diff(starts))
 
 
-def _weld(columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Find the distinct rows of (c, 4) index columns: the rows (n, 4), and the number of its row for each corner (c,).
+def _weld(first: np.ndarray, *others: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+    """Find the distinct combinations of index columns (c,): as columns (n,), and for each corner which it is (c,).
 
-    Column by column: one that the position already determines (the usual case) costs no sort.
+    Column by column: one that the columns before already determine (the usual case) costs no sort.
     """
-    ids, count = columns[:, 0], int(columns[:, 0].max(initial=-1)) + 1
-    for column in columns.T[1:]:
-        known = np.zeros(count, columns.dtype)
+    ids, count = first, int(first.max()) + 1
+    for column in others:
+        known = np.zeros(count, column.dtype)
         known[ids] = column
         if (known[ids] != column).any():
             keys = ids.astype(np.int64) * (int(column.max()) + 2) + column + 1
             distinct, ids = np.unique(keys, return_inverse=True)
             count = len(distinct)
-    rows = np.zeros((count, 4), columns.dtype)
-    rows[ids] = columns
-    return rows, ids
+    columns = [np.zeros(count, np.int32) for _ in range(1 + len(others))]
+    for result, column in zip(columns, (first, *others), strict=True):
+        result[ids] = column
+    return columns, ids
 
 
 def _normals(given: np.ndarray, normal: np.ndarray, computed: np.ndarray, shade: np.ndarray) -> np.ndarray:
@@ -167,8 +186,10 @@ def _texcoords(table: np.ndarray, index: np.ndarray, notes: Notes) -> np.ndarray
     return repaired_texcoords(texcoords.astype(np.float32), notes)
 
 
-def _colors(table: np.ndarray, place: np.ndarray, notes: Notes) -> np.ndarray | None:
+def _colors(table: np.ndarray | None, place: np.ndarray, notes: Notes) -> np.ndarray | None:
     """(n, 4) float32, taken as linear like the colours of glTF; None when no vertex has one."""
+    if table is None:
+        return None
     colors = table[place]
     present = ~np.isnan(colors).all(axis=1)
     if not present.any():

@@ -16,35 +16,39 @@ MOST_TESTS = 8_000_000  # point-in-ear tests in one file, some seconds; ear clip
 BATCH_CORNERS = 500_000  # polygons are looked at together, in batches that keep the temporary arrays small
 
 
-def triangulate(positions: np.ndarray, counts: np.ndarray, notes: Notes) -> tuple[np.ndarray, np.ndarray]:
-    """Cut faces whose corners lie one after the other in `positions` (c, 3), `counts` (f,) to each face.
+def triangulate(
+    positions: np.ndarray, place: np.ndarray, counts: np.ndarray, notes: Notes
+) -> tuple[np.ndarray, np.ndarray]:
+    """Cut faces into triangles: `place` (c,) are the positions of all their corners in order, `counts` (f,) how many.
 
-    Returns triangles (t, 3) as rows of `positions`, and the face (t,) each belongs to, faces in order.
+    Returns triangles (t, 3) int32 as numbers of corners, and the face (t,) int32 each belongs to, faces in order.
     """
     starts = np.cumsum(counts) - counts
-    triangles, owners = [np.zeros((0, 3), np.int64)], [np.zeros(0, np.int64)]
+    firsts = np.cumsum(counts - 2) - (counts - 2)
+    triangles = np.empty((int((counts - 2).sum()), 3), np.int32)
     effort = _Effort(notes)
     for corners in np.unique(counts).tolist():
-        if corners < 3:
-            continue
         faces = np.flatnonzero(counts == corners)
+        fan = _fan(corners)
         for some in np.array_split(faces, len(faces) * corners // BATCH_CORNERS + 1):
-            cut = _cut(positions[starts[some, None] + np.arange(corners)], effort)
-            triangles.append((cut + starts[some, None, None]).reshape(-1, 3))
-            owners.append(np.repeat(some, corners - 2))
-    order = np.argsort(np.concatenate(owners), kind="stable")
-    return np.concatenate(triangles)[order], np.concatenate(owners)[order]
+            cut = np.broadcast_to(fan, (len(some), *fan.shape))
+            if corners > 3:
+                cut = _cut(positions[place[starts[some, None] + np.arange(corners)]], cut, effort)
+            triangles[firsts[some, None] + np.arange(corners - 2)] = cut + starts[some, None, None]
+    return triangles, np.repeat(np.arange(len(counts), dtype=np.int32), counts - 2)
 
 
-def _cut(points: np.ndarray, effort: _Effort) -> np.ndarray:
-    """(m, k - 2, 3) local corner numbers of the triangles of m polygons `points` (m, k, 3)."""
-    count, corners = points.shape[:2]
-    fan = np.stack([np.zeros(corners - 2, np.int64), np.arange(1, corners - 1), np.arange(2, corners)], axis=1)
-    cut = np.broadcast_to(fan, (count, corners - 2, 3)).copy()
-    if corners == 3:
-        return cut
+def _fan(corners: int) -> np.ndarray:
+    return np.stack([np.zeros(corners - 2, int), np.arange(1, corners - 1), np.arange(2, corners)], axis=1)
+
+
+def _cut(points: np.ndarray, cut: np.ndarray, effort: _Effort) -> np.ndarray:
+    """(m, k - 2, 3) local corner numbers of the triangles of m polygons `points` (m, k, 3); `cut` are their fans."""
     reflex = _reflex(points)
-    if corners == 4:
+    if not reflex.any():
+        return cut
+    cut = cut.copy()
+    if points.shape[1] == 4:
         # A quad is cut right along the diagonal through its reflex corner.
         cut[reflex[:, 1] | reflex[:, 3]] = [[1, 2, 3], [1, 3, 0]]
         return cut

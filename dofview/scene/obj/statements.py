@@ -15,11 +15,14 @@ from itertools import compress
 import numpy as np
 
 from dofview.errors import ModelError
+from dofview.scene.limits import Account
 from dofview.scene.notes import Notes
+from dofview.scene.obj.lines import MISSING, OUT_OF_RANGE, faces, smoothing_group, table
 
-BLOCK_BYTES = 4_000_000
-MISSING = -1
-OUT_OF_RANGE = 2**31 - 1
+BLOCK_BYTES = 2_000_000
+LONGEST_LINE = 4_000_000
+TRIANGLE_BYTES = 120  # about what a triangle needs at the peak, vertices apart
+NO_INDICES = np.zeros(0, np.int32)
 _ODD_SPACES = b"\r\t\v\f\0"
 _SPACES = bytes.maketrans(_ODD_SPACES, b"\n    ")
 _LEFT_OUT = {
@@ -38,11 +41,11 @@ class Statements:
     """What stands in the file; indices start at 0, MISSING where none was given, and may still be out of range."""
 
     positions: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
-    colors: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))  # NaN where a vertex has none
+    colors: np.ndarray | None = None  # (n, 3), NaN where a vertex has none; None when no vertex has one
     texcoords: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
     normals: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
-    corners: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), np.int32))  # position, texcoord, normal
-    counts: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int32))  # corners of each face
+    corners: tuple[np.ndarray, np.ndarray, np.ndarray] = (NO_INDICES,) * 3  # position, texcoord and normal of each
+    counts: np.ndarray = field(default_factory=lambda: np.zeros(0, np.int32))  # of corners, for each face
     libraries: list[str] = field(default_factory=list)
     materials: list[tuple[int, str]] = field(default_factory=list)  # from this face on, this material
     smoothing: list[tuple[int, int]] = field(default_factory=list)  # from this face on, this group; 0 is flat
@@ -72,9 +75,9 @@ def decode_name(raw: bytes) -> str:
         return raw.decode("latin-1")
 
 
-def scan(data: bytes, notes: Notes) -> Statements:
+def scan(data: bytes, account: Account, notes: Notes) -> Statements:
     """Parse the bytes of an OBJ file; ModelError when nothing in it looks like one."""
-    scanner = _Scanner(notes)
+    scanner = _Scanner(account, notes)
     for block in _blocks(normalise(data)):
         scanner.scan_block(block)
     return scanner.finish()
@@ -85,17 +88,20 @@ def _blocks(data: bytes) -> Iterator[bytes]:
     while start < len(data):
         end = data.find(b"\n", start + BLOCK_BYTES)
         end = len(data) if end < 0 else end
+        if end - start > LONGEST_LINE + BLOCK_BYTES:
+            raise ModelError(f"has a line of {end - start - BLOCK_BYTES} bytes or more; accepted: up to {LONGEST_LINE}")
         yield data[start:end]
         start = end + 1
 
 
 class _Scanner:
-    def __init__(self, notes: Notes) -> None:
-        self._notes = notes
+    def __init__(self, account: Account, notes: Notes) -> None:
+        self._account, self._notes = account, notes
         self._made = Statements()
         self._tables: dict[bytes, list[np.ndarray]] = {b"v": [], b"vt": [], b"vn": []}
-        self._seen = {b"v": 0, b"vt": 0, b"vn": 0}
-        self._corners: list[np.ndarray] = []
+        self._colors: list[np.ndarray | None] = []
+        self._seen = dict.fromkeys(self._tables, 0)
+        self._corners: list[tuple[np.ndarray, ...]] = []
         self._counts: list[np.ndarray] = []
         self._faces = self._left_out = 0
 
@@ -112,14 +118,20 @@ class _Scanner:
         for kind, tables in self._tables.items():
             picked = list(compress(lines, is_kind[kind].tolist()))
             if picked:
-                tables.append(table(kind, picked))
+                values = table(kind, picked)
+                tables.append(values[:, :3].copy())
                 self._seen[kind] += len(picked)
+                if kind == b"v":
+                    self._colors.append(None if np.isnan(values[:, 3:]).all() else values[:, 3:])
 
     def _scan_faces(self, lines: list[bytes], is_kind: dict[bytes, np.ndarray]) -> None:
         picked = list(compress(lines, is_kind[b"f"].tolist()))
         if not picked:
             return
         corners, counts = faces(picked)
+        triangles = int(np.maximum(counts - 2, 0).sum())
+        self._account.charge_triangles(triangles)
+        self._account.charge_geometry(triangles * TRIANGLE_BYTES)
         if (corners < 0).any():
             line_of = np.repeat(np.flatnonzero(is_kind[b"f"]), counts)
             for column, kind in enumerate(self._tables):
@@ -127,7 +139,10 @@ class _Scanner:
                 so_far = self._seen[kind] + np.cumsum(is_kind[kind])[line_of[relative]]
                 absolute = corners[relative, column] + so_far + 1
                 corners[relative, column] = np.where(absolute > 0, absolute, OUT_OF_RANGE)
-        self._corners.append((corners - 1).astype(np.int32))
+        corners -= 1
+        columns = corners.astype(np.int32).T
+        # A column that nothing uses takes no memory.
+        self._corners.append(tuple(c.copy() if (c != MISSING).any() else _nothing(len(c)) for c in columns))
         self._counts.append(counts)
         self._faces += len(picked)
 
@@ -139,7 +154,7 @@ class _Scanner:
         elif keyword == b"mtllib":
             self._made.libraries.append(decode_name(rest))
         elif keyword == b"s":
-            self._made.smoothing.append((face, _smoothing_group(rest)))
+            self._made.smoothing.append((face, smoothing_group(rest)))
         elif keyword in _LEFT_OUT:
             self._notes.count(*_LEFT_OUT[keyword], "not shown")
             self._left_out += 1
@@ -150,85 +165,26 @@ class _Scanner:
         """Join the blocks."""
         if not (self._seen[b"v"] or self._faces or self._left_out):
             raise ModelError("holds no vertex and no face; accepted: Wavefront OBJ text")
-        made = self._made
-        vertices = np.concatenate([np.zeros((0, 6)), *self._tables[b"v"]])
-        made.positions, made.colors = vertices[:, :3], vertices[:, 3:]
-        made.texcoords = np.concatenate([np.zeros((0, 2)), *self._tables[b"vt"]])
-        made.normals = np.concatenate([np.zeros((0, 3)), *self._tables[b"vn"]])
+        made, tables = self._made, self._tables
+        if any(colors is not None for colors in self._colors):
+            pairs = zip(self._colors, tables[b"v"], strict=True)
+            made.colors = np.concatenate([np.full_like(v, np.nan) if c is None else c for c, v in pairs])
+        made.positions = np.concatenate([made.positions, *tables.pop(b"v")])
+        made.texcoords = np.concatenate([made.texcoords, *tables.pop(b"vt")])
+        made.normals = np.concatenate([made.normals, *tables.pop(b"vn")])
         if self._corners:
-            made.corners, made.counts = np.concatenate(self._corners), np.concatenate(self._counts)
+            columns = list(zip(*self._corners, strict=True))
+            self._corners.clear()
+            made.corners = tuple(map(_joined, columns))
+            made.counts = np.concatenate(self._counts)
         return made
 
 
-def table(kind: bytes, lines: list[bytes]) -> np.ndarray:
-    """(n, width) float64 of `v` (6: position, colour), `vt` (2) or `vn` (3) lines; NaN where there is no number."""
-    width = {b"v": 6, b"vt": 2, b"vn": 3}[kind]
-    tokens = b"\n".join(lines).split()
-    each, rest = divmod(len(tokens), len(lines))
-    if rest or each < 2 or tokens[::each].count(kind) != len(lines):
-        rows = [line.split()[1 : width + 1] for line in lines]
-        each = width + 1
-        tokens = [token for row in rows for token in (kind, *row, *[b"nan"] * (width - len(row)))]
-    del tokens[::each]
-    try:
-        values = np.fromiter(map(float, tokens), np.float64, len(tokens))
-    except ValueError:
-        values = np.array([_number(token) for token in tokens])
-    values = values.reshape(len(lines), each - 1)
-    result = np.full((len(lines), width), np.nan)
-    # Four or five numbers after `v` are x y z w, and w means nothing for polygons.
-    usable = 3 if kind == b"v" and each - 1 < 6 else width
-    usable = min(usable, each - 1)
-    result[:, :usable] = values[:, :usable]
-    return result
+def _nothing(count: int) -> np.ndarray:
+    return np.broadcast_to(np.int32(MISSING), count)
 
 
-def faces(lines: list[bytes]) -> tuple[np.ndarray, np.ndarray]:
-    """Corners (c, 3) int64 of `f` lines, counted from 1 as written, 0 where not given; and how many each face has."""
-    text = b"\n".join(lines)
-    if b"#" in text:
-        lines = [line.partition(b"#")[0] for line in lines]
-        text = b"\n".join(lines)
-    tokens = text.split()
-    each, rest = divmod(len(tokens), len(lines))
-    if rest or tokens[::each].count(b"f") != len(lines):
-        rows = [line.split() for line in lines]
-        counts = np.array([len(row) - 1 for row in rows], np.int32)
-        tokens = [token for row in rows for token in row[1:]]
-    else:
-        counts = np.full(len(lines), each - 1, np.int32)
-        del tokens[::each]
-    corners = np.zeros((len(tokens), 3), np.int64)
-    joined = b" ".join(tokens)
-    slashes = {token.count(b"/") for token in tokens}
-    double = joined.count(b"//")
-    columns = {0: [0], 1: [0, 1], 2: [0, 1, 2] if not double else [0, 2]}.get(min(slashes, default=0), [0])
-    numbers = joined.replace(b"/", b" ").split()
-    regular = len(slashes) == 1 and double in (0, len(tokens)) and len(numbers) == len(tokens) * len(columns)
-    try:
-        if not regular:
-            raise ValueError
-        corners[:, columns] = np.fromiter(map(int, numbers), np.int64, len(numbers)).reshape(len(tokens), -1)
-    except (ValueError, OverflowError):
-        for row, token in enumerate(tokens):
-            parts = token.split(b"/")[:3]
-            corners[row, : len(parts)] = [_index(part) for part in parts]
-    return np.clip(corners, -OUT_OF_RANGE, OUT_OF_RANGE), counts
-
-
-def _number(token: bytes) -> float:
-    try:
-        return float(token)
-    except ValueError:
-        return np.nan
-
-
-def _index(token: bytes) -> int:
-    try:
-        return max(-OUT_OF_RANGE, min(int(token), OUT_OF_RANGE))
-    except ValueError:
-        return 0
-
-
-def _smoothing_group(text: bytes) -> int:
-    return abs(_index(text)) % 2**31  # "off" and anything that is no number give 0: flat
+def _joined(parts: tuple[np.ndarray, ...]) -> np.ndarray:
+    if any(part.strides[0] for part in parts):
+        return np.concatenate(parts)
+    return _nothing(sum(map(len, parts)))
