@@ -87,3 +87,18 @@ def test_pick_says_how_near_it_comes():
         pick(POINTS, budget_ms=0.5)
     with pytest.raises(InputError, match="nothing of 60 dB; the best is c with 40.0 dB"):
         pick(POINTS, budget_ms=5.0, min_psnr=60.0)
+
+
+def test_the_report_holds_every_case_and_every_claim(tmp_path):
+    from dofview.bench.papers import CLAIMS
+    from dofview.bench.report import write_report
+
+    store = bench(TINY, tmp_path)
+    write_report(store)
+    markdown = (tmp_path / "report.md").read_text()
+    assert all(f"{record['psnr']:.2f}" in markdown for record in store.records)
+    assert all(claim.what in markdown for claim in CLAIMS)
+    page = (tmp_path / "report.html").read_text()
+    assert page.count("<svg") >= 4 and "http://" not in page.replace("http://www.w3.org", "").replace(
+        "http://purl.org", ""
+    ).replace("http://creativecommons.org", "")

@@ -141,7 +141,7 @@ def machine(gpu: Gpu) -> dict[str, str]:
     """What a figure was measured on."""
     return {
         "renderer": gpu.renderer, "gl": gpu.ctx.info["GL_VERSION"], "python": platform.python_version(),
-        "system": platform.platform(terse=True), "dofview": dofview.__version__,
+        "system": f"{platform.system()} {platform.machine()}", "dofview": dofview.__version__,
     }  # fmt: skip
 
 

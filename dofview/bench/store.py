@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from functools import partial
 from pathlib import Path
 
 from dofview.bench.plan import Case
@@ -71,8 +72,11 @@ class Store:
             except ValueError as error:
                 # A run that was killed while writing leaves its last line cut: it goes. Any other is damage.
                 if number == len(lines):
-                    whole = "".join(line + "\n" for line in lines[:-1])
-                    write_whole(self._lines, lambda part: part.write_text(whole, encoding="utf-8"))
+                    write_whole(self._lines, partial(_write_lines, lines[:-1]))
                     break
                 raise InputError(f"{self._lines}:{number}: not a result: {error}") from error
         return records
+
+
+def _write_lines(lines: list[str], part: Path) -> None:
+    part.write_text("".join(line + "\n" for line in lines), encoding="utf-8")

@@ -52,7 +52,7 @@ def make_app(chosen: str | None) -> App:
     app.default(flags.with_flags(view, picture))
     app.command(flags.with_flags(render, [*flags.of_model("timing", Timing, PACE), *picture]))
     app.command(flags.with_flags(compare, [*flags.of_model("comparing", Comparing, PACE), *flags.of_settings(None)]))
-    for command in (methods, info, doctor, stress):
+    for command in (methods, info, doctor, bench, pick, stress):
         app.command(command)
     return app
 
@@ -136,6 +136,52 @@ def stress(
     sys.exit(run_stress(minutes, row, method, seed, size, views, rounds))
 
 
+def bench(
+    *, out: Path = Path("bench"), quick: Annotated[bool, Parameter(negative="")] = False, scenes: str | None = None,
+    methods: str | None = None, coc: str | None = None, sizes: str | None = None, frames: int | None = None,
+    views: int | None = None, scheduler: str | None = None,
+) -> None:  # fmt: skip
+    """Measure run time against error over scenes, methods, lenses and sizes, and write a report.
+
+    A sweep that was broken off goes on where it was. Lists are written with commas between.
+
+    Parameters
+    ----------
+    out
+        Folder for results and report.
+    quick
+        A small sweep of a few minutes.
+    coc
+        Mean CoC diameters, pixels.
+    scheduler
+        Address of a Dask scheduler whose workers measure.
+    """
+    from dofview.cli.benching import run_bench
+
+    run_bench(
+        out, small=quick, scenes=scenes, methods=methods, coc=coc, sizes=sizes, frames=frames, views=views,
+        scheduler=scheduler,
+    )  # fmt: skip
+
+
+def pick(
+    scene: Spec = OPENS_WITH, /, *, budget: str | None = None, min_psnr: float | None = None, coc: float = 16.0,
+    size: str = "512x384", out: Path | None = None,
+) -> None:  # fmt: skip
+    """Name the method and settings to take on this machine: the best within a budget, the fastest of a quality.
+
+    Parameters
+    ----------
+    budget
+        Milliseconds a frame may take, as 8ms.
+    coc
+        Mean CoC diameter, pixels.
+    """
+    from dofview.cli.benching import run_pick
+
+    run_pick(scene, budget, min_psnr, coc, size, out)
+
+
 def _unknown(error: UnknownOptionError, chosen: str | None) -> str:
     flag = str(error.token.keyword or error.token.value) if error.token else str(error)
     names = [n for a in error.argument_collection or () for n in a.names if n.startswith("--")]
@@ -147,6 +193,6 @@ def _unknown(error: UnknownOptionError, chosen: str | None) -> str:
 
 
 def _hint(tokens: Sequence[str]) -> str:
-    known = ("render", "compare", "methods", "info", "doctor", "stress")
+    known = ("render", "compare", "methods", "info", "doctor", "bench", "pick", "stress")
     command = next((t for t in tokens if t in known), "")
     return f"; see dofview {command + ' ' if command else ''}--help"

@@ -1,0 +1,109 @@
+"""`dofview bench` and `dofview pick`: run time against error, and what to take for a budget."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress
+
+from dofview.bench.pareto import pick, quality
+from dofview.bench.plan import Case, Sweep, quick
+from dofview.bench.report import write_report
+from dofview.bench.run import bench, bench_on_dask
+from dofview.cli.chosen import read_size
+from dofview.errors import SettingsError
+from dofview.methods import method
+
+
+def run_bench(
+    out: Path, *, small: bool, scenes: str | None, methods: str | None, coc: str | None, sizes: str | None,
+    frames: int | None, views: int | None, scheduler: str | None,
+) -> None:  # fmt: skip
+    """Measure a sweep into `out` and write its report there."""
+    sweep = _sweep(quick() if small else Sweep(), scenes, methods, coc, sizes, frames, views)
+    total = len(list(sweep.cases()))
+    with Progress(console=Console(stderr=True)) as progress:
+        task = progress.add_task("measuring", total=total)
+
+        def on_case(case: Case, record: dict) -> None:
+            found = f"{case.scene} {case.method} CoC {case.coc_px:g}: {record['ms']:.1f} ms {quality(record):.1f} dB"
+            progress.update(task, advance=1, description=found)
+
+        store = bench(sweep, out, on_case) if scheduler is None else bench_on_dask(sweep, out, scheduler, on_case)
+    write_report(store)
+    print(f"{len(store.records)} cases in {out}: report.html, report.md, results.csv, results.json")
+
+
+def run_pick(
+    scene: str, budget: str | None, min_psnr: float | None, coc_px: float, size: str, out: Path | None
+) -> None:
+    """Measure the methods on a scene and name the one to take."""
+    budget_ms = None if budget is None else _milliseconds(budget)
+    if budget_ms is None and min_psnr is None:
+        raise SettingsError("pick needs --budget 8ms, --min-psnr 38, or both")
+    sweep = dataclasses.replace(
+        quick(), scenes=(scene,), coc_px=(coc_px,), sizes=(read_size(size),), every_quality=True, views=256
+    )
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        store = bench(sweep, out or Path(folder))
+        chosen = pick([r for r in store.records if r["scene"] == scene], budget_ms=budget_ms, min_psnr=min_psnr)
+    flags = " ".join(f"--{name.replace('_', '-')} {value}" for name, value in chosen["parameters"].items())
+    print(f"{chosen['ms']:.1f} ms, {quality(chosen):.1f} dB against its {chosen['distribution']} reference")
+    print(f"dofview {scene} --method {chosen['method']} {flags}".rstrip())
+
+
+def _sweep(
+    sweep: Sweep, scenes: str | None, methods: str | None, coc: str | None, sizes: str | None, frames: int | None,
+    views: int | None,
+) -> Sweep:  # fmt: skip
+    changes: dict[str, object] = {}
+    if scenes:
+        changes["scenes"] = tuple(scenes.split(","))
+    if methods:
+        changes["methods"] = tuple(methods.split(","))
+        for name in methods.split(","):
+            method(name)
+    if coc:
+        changes["coc_px"] = tuple(_number(text, "coc") for text in coc.split(","))
+    if sizes:
+        changes["sizes"] = tuple(read_size(text) for text in sizes.split(","))
+    if frames is not None:
+        changes["frames"] = _at_least_one(frames, "frames")
+    if views is not None:
+        changes["views"] = _at_least_one(views, "views")
+    return dataclasses.replace(sweep, **changes)
+
+
+def _number(text: str, name: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not 0.0 <= value <= 500.0:
+        raise SettingsError(f"{name} is {text[:40]!r}; accepted: numbers from 0 to 500 with commas between")
+    return value
+
+
+def _at_least_one(value: int, name: str) -> int:
+    if not 1 <= value <= 65536:
+        raise SettingsError(f"{name} is {value}; accepted: a whole number from 1 to 65536")
+    return value
+
+
+def _milliseconds(text: str) -> float:
+    number = _number_of(text.removesuffix("ms"))
+    if number is None:
+        raise SettingsError(f"budget is {text[:40]!r}; accepted: milliseconds, as 8ms")
+    return number
+
+
+def _number_of(text: str) -> float | None:
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if 0.0 < value < 1e9 else None
