@@ -85,6 +85,12 @@ class Lens(BaseModel):
                 return MATCHED_SIGMA * math.sqrt((2.0 + math.cos(2.0 * math.pi / self.blades)) / 12.0)
         return MATCHED_SIGMA * DISC_RMS
 
+    @property
+    def radius_as_sigma_fraction(self) -> float:
+        """σ over the radius by the convention of Kraus 2007 and Lee 2009 (mipmap), whose lens is a Gaussian with the
+        radius as σ. A Gaussian lens says its own."""
+        return self.sigma_fraction if self.distribution == Distribution.GAUSSIAN else 1.0
+
     def coc(self, focal_px: float) -> CocLaw:
         """Return this lens's circle-of-confusion law for a picture with `focal_px`."""
         return CocLaw(scale=self.radius * focal_px, inverse_focus=1.0 / self.focus_distance)

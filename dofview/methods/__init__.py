@@ -7,7 +7,7 @@ from importlib import import_module
 from dofview.errors import SettingsError
 from dofview.methods.method import Method
 
-METHODS = ("pinhole", "mipmap", "splatting", "multiview", "layered", "accumulation")
+METHODS = ("pinhole", "mipmap", "splatting", "multiview", "layered", "pyramid", "accumulation")
 
 
 def method(name: str) -> Method:

@@ -43,14 +43,17 @@ class Method(Protocol):
 class Recipe:
     """Passes of one method over one frame: shaders from its own folder, images under its own name.
 
-    The blocks Lens (`include/lens.glsl`) and Params are there for every shader that includes them.
+    The blocks Lens (`include/lens.glsl`) and Params are there for every shader that includes them. `sigma` is the
+    Gaussian's σ over the CoC radius where a method takes another than the one that matches the lens.
     """
 
-    def __init__(self, frame: Frame, name: str, params: Params):
+    def __init__(self, frame: Frame, name: str, params: Params, sigma: float | None = None):
         self.frame = frame
         self.gpu = frame.gpu
         self.name = name
-        self._blocks = {"Lens": frame.lens_block, "Params": params}
+        self.params = params
+        lens = frame.lens_block if sigma is None else frame.lens_block.model_copy(update={"sigma": sigma})
+        self.blocks: dict[str, BaseModel] = {"Lens": lens, "Params": params}
 
     def image(
         self, name: str, size: tuple[int, int] | None = None, components: int = 4, dtype: str = "f4",
@@ -69,6 +72,6 @@ class Recipe:
         path = shader if "/" in shader else f"methods/{self.name}/{shader}"
         with self.gpu.profile.section(f"{self.name}/{path.rsplit('/', 1)[-1].removesuffix('.frag')}"):
             draw(
-                self.gpu, path, into, textures=textures, blocks={**self._blocks, **(blocks or {})}, values=values,
+                self.gpu, path, into, textures=textures, blocks={**self.blocks, **(blocks or {})}, values=values,
                 defines=defines, blend=blend, clear=clear, viewport=viewport,
             )  # fmt: skip

@@ -14,7 +14,6 @@ from pydantic import Field
 
 from dofview.gl.pyramids import Atlas, level_size, most_levels
 from dofview.gl.targets import Image
-from dofview.lens import Distribution
 from dofview.methods.method import Params as BaseParams
 from dofview.methods.method import Recipe
 from dofview.render.frame import Frame
@@ -56,10 +55,9 @@ class Params(BaseParams):
 
 def render(frame: Frame, params: Params) -> Image:
     """Return the picture with depth of field. Steps are numbered as in the paper's figure 10."""
-    recipe = Recipe(frame, "mipmap", params)
     paper = params.constants == Constants.PAPER
-    sigma = _sigma(frame, paper)
-    blocks = {"Lens": frame.lens_block.model_copy(update={"sigma": sigma})}
+    sigma = frame.lens.radius_as_sigma_fraction if paper else frame.lens.matched_sigma_fraction
+    recipe = Recipe(frame, "mipmap", params, sigma=sigma)
     nearest, farthest = frame.coc_range()
     greatest = sigma * max(abs(nearest), abs(farthest))
     top = _level(greatest)
@@ -75,7 +73,7 @@ def render(frame: Frame, params: Params) -> Image:
     surfaces = frame.pinhole()
     images = [_pair(recipe, atlas, parity) for parity in (0, 1)]
     recipe.draw(
-        "prepare.frag", images[0], blocks=blocks, viewport=atlas.viewport(0),
+        "prepare.frag", images[0], viewport=atlas.viewport(0),
         pinhole=surfaces.color, inverse_depth=surfaces.inverse_depth,
     )  # fmt: skip
 
@@ -84,7 +82,7 @@ def render(frame: Frame, params: Params) -> Image:
         colors, zbns = images[(level - 1) % 2]
         _, _, *source_size = atlas.viewport(level - 1)
         recipe.draw(
-            "reduce.frag", images[level % 2], blocks=blocks, defines=defines, viewport=atlas.viewport(level),
+            "reduce.frag", images[level % 2], defines=defines, viewport=atlas.viewport(level),
             values={
                 "corner": atlas.corner(level), "source_corner": atlas.corner(level - 1),
                 "source_size": tuple(source_size),
@@ -108,7 +106,7 @@ def render(frame: Frame, params: Params) -> Image:
     # 5. Between the two levels that give each pixel its blur.
     result = recipe.image("result")
     recipe.draw(
-        "blend.frag", result, blocks=blocks, values=atlas.values(), defines=defines,
+        "blend.frag", result, values=atlas.values(), defines=defines,
         inverse_depth=surfaces.inverse_depth, even_levels=images[0][0], odd_levels=images[1][0], **foreground,
     )  # fmt: skip
     return result
@@ -118,13 +116,6 @@ def _pair(recipe: Recipe, atlas: Atlas, parity: int) -> tuple[Image, Image]:
     """The colour and the ZBN image of the even or the odd levels."""
     size, name = atlas.image_size(parity), ("even", "odd")[parity]
     return tuple(recipe.image(f"{kind} {name} levels", size, linear=True) for kind in ("colour", "ZBN"))
-
-
-def _sigma(frame: Frame, paper: bool) -> float:
-    """σ over the CoC radius. The paper's lens has σ = C/2, the radius itself, unless a Gaussian lens says its own."""
-    if paper and frame.lens.distribution != Distribution.GAUSSIAN:
-        return 1.0
-    return frame.lens.matched_sigma_fraction
 
 
 def _level(sigma: float) -> float:

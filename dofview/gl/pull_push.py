@@ -1,0 +1,70 @@
+"""Pull-push: holes in an image filled from what surrounds them, at a cost that does not depend on their size.
+
+Pull: each coarser level is the mean of what is known of the finer one, until a single texel is left. Push: from the
+coarsest level back, what is not known is taken from the level above, enlarged smoothly. What is known stays to the bit.
+
+S. J. Gortler et al.: The Lumigraph. SIGGRAPH 1996. M. Strengert, M. Kraus, T. Ertl: Pyramid Methods in GPU-Based Image
+Processing. VMV 2006. M. Kraus: The Pull-Push Algorithm Revisited. GRAPP 2009.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from dofview.gl.context import Gpu
+from dofview.gl.passes import Blocks, Textures, draw
+from dofview.gl.pyramids import Size, level_size, most_levels
+from dofview.gl.targets import Image
+
+KNOWN = "pass/known.glsl"
+Pair = tuple[Image, Image]
+
+
+def pull_push(
+    gpu: Gpu, name: str, size: Size, known: str = KNOWN, *, textures: Textures, blocks: Blocks | None = None,
+    values: Mapping[str, object] | None = None,
+) -> Pair:  # fmt: skip
+    """Return the filled level 1 over an image of `size`: colours times weight with the weight in alpha, and one more
+    value times it. Level 0 is `pass/push.frag`, or a shader that does its work on the way.
+
+    `known` names the GLSL file that says what level 0 knows (`pass/pull.frag`); `textures`, `blocks` and `values` are
+    what it reads. The weight of a level is 0 only where nothing at all is known.
+    """
+    top = max(most_levels(size), 1)
+    pulled = [_pair(gpu, f"{name} pulled", size, level) for level in range(1, top + 1)]
+    _pull(gpu, size, pulled[0], known, textures, blocks or {}, values or {})
+    for level in range(2, top + 1):
+        source = dict(zip(("colors", "extras"), pulled[level - 2], strict=True))
+        _pull(gpu, level_size(size, level - 1), pulled[level - 1], KNOWN, source, {}, {})
+    filled = pulled[-1]
+    for level in range(top - 1, 0, -1):
+        own = dict(zip(("colors", "extras"), pulled[level - 1], strict=True))
+        above = dict(zip(("coarse_colors", "coarse_extras"), filled, strict=True))
+        filled = _pair(gpu, f"{name} filled", size, level)
+        draw(gpu, "pass/push.frag", filled, textures={**own, **above}, defines={"KNOWN": KNOWN})
+    return filled
+
+
+def fill(gpu: Gpu, colors: Image, extras: Image, into: Pair, name: str) -> None:
+    """Write `colors` (times weight, weight in alpha) and `extras` (times weight) to `into` with their holes filled."""
+    own = {"colors": colors, "extras": extras}
+    coarse = pull_push(gpu, name, colors.size, textures=own)
+    above = dict(zip(("coarse_colors", "coarse_extras"), coarse, strict=True))
+    draw(gpu, "pass/push.frag", into, textures={**own, **above}, defines={"KNOWN": KNOWN})
+
+
+def _pull(
+    gpu: Gpu, fine_size: Size, into: Pair, known: str, textures: Textures, blocks: Blocks, values: Mapping[str, object]
+) -> None:
+    draw(
+        gpu, "pass/pull.frag", into, textures=textures, blocks=blocks, values={**values, "fine_size": fine_size},
+        defines={"KNOWN": known},
+    )  # fmt: skip
+
+
+def _pair(gpu: Gpu, name: str, size: Size, level: int) -> Pair:
+    shape = level_size(size, level)
+    return (
+        gpu.targets.image(f"{name} {level}", shape, linear=True),
+        gpu.targets.image(f"{name} extra {level}", shape, 1, linear=True),
+    )
