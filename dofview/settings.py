@@ -7,6 +7,7 @@ JSON.
 from __future__ import annotations
 
 import json
+import stat
 from pathlib import Path
 from typing import Annotated, TypeVar
 
@@ -22,6 +23,7 @@ from dofview.render.environment import Lighting
 from dofview.scene.camera import Camera
 
 LARGEST_SIDE = 16384
+LARGEST_VIEW = 16 << 20
 M = TypeVar("M", bound=BaseModel)
 Side = Annotated[int, Field(ge=1, le=LARGEST_SIDE)]
 Linear = Annotated[float, Field(ge=0.0, le=1e4, allow_inf_nan=False)]
@@ -119,6 +121,9 @@ def read_view(path: Path, base: Settings) -> Settings:
     Unknown keys are ignored; a wrong value is a SettingsError naming file and key.
     """
     try:
+        found = path.stat()
+        if not stat.S_ISREG(found.st_mode) or found.st_size > LARGEST_VIEW:
+            raise SettingsError(f"{path}: not a view file; accepted: a JSON file of at most {LARGEST_VIEW >> 20} MiB")
         view = json.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise SettingsError(f"{path}: cannot read view file: {(error.strerror or str(error)).lower()}") from error

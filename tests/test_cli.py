@@ -201,7 +201,7 @@ def test_a_wrong_view_file_is_refused_by_name(run: Run, tmp_path: Path, content:
 
 
 def test_a_missing_view_file_or_a_folder_is_refused(run: Run, tmp_path: Path):
-    for path in (tmp_path / "none.json", tmp_path, "nul\0.json"):
+    for path in (tmp_path / "none.json", tmp_path, "nul\0.json", "/dev/zero"):
         refused(run("render", DEMO, "--view", path, "-o", tmp_path / "a.png"), 2, "view file")
 
 

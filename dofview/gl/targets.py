@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
+from dofview.errors import GLError
 from dofview.gl.layered import DepthArray
 
 # moderngl calls normalised bytes "f1"; numpy knows them as bytes.
@@ -104,13 +105,14 @@ class TargetPool:
         depth_key = (*shape.size, shape.layers) if depth else None
         key = (tuple(image.texture.glo for image in images), depth_key)
         if key not in self._framebuffers:
-            textures = [image.texture for image in images]
-            if depth_key is None or shape.layers == 0:
-                self._framebuffers[key] = self._ctx.framebuffer(textures, self._depth(depth_key) if depth_key else None)
-            else:
-                buffer = self._depth(depth_key)
-                self._framebuffers[key] = self._ctx.framebuffer(textures)
-                buffer.attach(self._framebuffers[key])
+            try:
+                self._framebuffers[key] = self._make(images, depth_key)
+            except moderngl.Error as error:
+                # Textures are made without a complaint where there is no memory for them; this is where it shows.
+                size = "x".join(map(str, shape.size))
+                raise GLError(
+                    f"no memory for images of {size} pixels ({error}); accepted: a smaller picture"
+                ) from error
         if depth_key is not None:
             self._depth_used[depth_key] = self._clock
         return self._framebuffers[key]
@@ -134,6 +136,15 @@ class TargetPool:
         self.collect(keep_frames=-1)
         self._resting.color_attachments[0].release()
         self._resting.release()
+
+    def _make(self, images: Sequence[Image], depth_key: tuple[int, int, int] | None) -> moderngl.Framebuffer:
+        textures = [image.texture for image in images]
+        if depth_key is None or depth_key[2] == 0:
+            return self._ctx.framebuffer(textures, self._depth(depth_key) if depth_key else None)
+        buffer = self._depth(depth_key)
+        framebuffer = self._ctx.framebuffer(textures)
+        buffer.attach(framebuffer)
+        return framebuffer
 
     def _depth(self, key: tuple[int, int, int]) -> moderngl.Renderbuffer | DepthArray:
         """The depth buffer for a width, height and number of layers (0: not an array)."""
