@@ -43,13 +43,13 @@ class Lens(BaseModel):
 
     radius: float = Field(default=0.0, ge=0.0, le=1e12, allow_inf_nan=False, description="Lens radius, scene units.")
     focus_distance: float = Field(
-        default=5.0, gt=0.0, description="Distance in focus along the view axis, scene units; may be infinite."
+        default=5.0, ge=1e-12, description="Distance in focus along the view axis, scene units; may be infinite."
     )
     distribution: Distribution = Field(
         default=Distribution.UNIFORM_DISC, description="How light is distributed over the lens."
     )
     gaussian_sigma: float | None = Field(
-        default=None, gt=0.0, allow_inf_nan=False,
+        default=None, gt=0.0, le=1e12, allow_inf_nan=False,
         description="σ of the Gaussian distribution, scene units; half the radius when not given.",
     )  # fmt: skip
     blades: int = Field(default=6, ge=3, le=32, description="Corners of the polygon distribution.")
@@ -64,7 +64,7 @@ class Lens(BaseModel):
     @classmethod
     def _not_nan(cls, value: float) -> float:
         if math.isnan(value):
-            raise ValueError("focus_distance is nan; accepted: a number above 0, or inf")
+            raise ValueError("focus_distance is nan; accepted: a number of at least 1e-12, or inf")
         return value
 
     @property
@@ -72,7 +72,8 @@ class Lens(BaseModel):
         """σ of the Gaussian distribution as a fraction of the lens radius."""
         if self.gaussian_sigma is None or self.radius == 0.0:
             return DISC_RMS
-        return self.gaussian_sigma / self.radius
+        # A lens of almost no radius blurs nothing, however wide; what a shader is given must be a float32.
+        return min(self.gaussian_sigma / self.radius, 1e6)
 
     @property
     def matched_sigma_fraction(self) -> float:

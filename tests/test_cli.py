@@ -187,7 +187,7 @@ def test_bad_input_is_one_line_that_says_what_is_accepted(run: Run, tmp_path: Pa
     [(b"", "not a JSON"), (b"[1]", "one JSON object"), (b"\xff\xfe\x00", "not a JSON"), (b"[" * 100_000, "not a JSON"),
      (b'{"lens": 3}', "lens"), (b'{"lens": {"radius": -1}}', "radius"), (b'{"lens": {"radius": NaN}}', "radius"),
      (b'{"lens": {"radius": 1e999}}', "radius"), (b'{"lens": {"radius": "wide"}}', "radius"),
-     (b'{"lens": {"distribution": "star"}}', "uniform_disc"), (b'{"lens": {"focus_distance": 0}}', "above 0"),
+     (b'{"lens": {"distribution": "star"}}', "uniform_disc"), (b'{"lens": {"focus_distance": 0}}', "at least 1e-12"),
      (b'{"camera": {"position": [0, 1]}}', "position"), (b'{"camera": {"vfov_deg": 180}}', "below 179"),
      (b'{"camera": {"position": [1, 1, 1], "target": [1, 1, 1]}}', "same point"),
      (b'{"image": {"size": [0, 5]}}', "size"), (b'{"image": {"size": [100000, 5]}}', "size"),

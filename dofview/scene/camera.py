@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-Vector = tuple[float, float, float]
+# Squares of what is farther away would be infinite in a shader.
+Coordinate = Annotated[float, Field(ge=-1e18, le=1e18)]
+Vector = tuple[Coordinate, Coordinate, Coordinate]
 
 
 class Camera(BaseModel):
@@ -18,13 +21,13 @@ class Camera(BaseModel):
     position: Vector = Field(default=(0.0, 0.0, 5.0), description="Where the lens centre is, scene units.")
     target: Vector = Field(default=(0.0, 0.0, 0.0), description="A point on the view axis, scene units.")
     up: Vector = Field(default=(0.0, 1.0, 0.0), description="Which way is up in the picture.")
-    vfov_deg: float = Field(default=45.0, gt=0.0, lt=179.0, description="Vertical field of view, degrees.")
+    vfov_deg: float = Field(default=45.0, ge=1e-3, lt=179.0, description="Vertical field of view, degrees.")
     near: float | None = Field(default=None, description="Nearest depth asked for, scene units; a hint.")
     far: float | None = Field(default=None, description="Farthest depth asked for, scene units; a hint.")
 
     @model_validator(mode="after")
     def _has_a_direction(self) -> Camera:
-        if np.allclose(self.position, self.target, rtol=1e-12, atol=0.0):
+        if self.distance < 1e-18 or np.allclose(self.position, self.target, rtol=1e-12, atol=0.0):
             raise ValueError("camera position and target are the same point; accepted: two different points")
         return self
 
