@@ -140,8 +140,8 @@ class Scene:
     def bounds(self) -> np.ndarray:
         """(2, 3) float64: the lowest and highest corner in world space; zeros for an empty scene."""
         if not self._bounds:
-            corners = [instance_bounds(self.primitives[i.primitive], i.matrix) for i in self.instances]
-            corners = [c for c in corners if c is not None]
+            boxes = [instance_bounds(self.primitives[i.primitive], i.matrix) for i in self.instances]
+            corners = [c for c in boxes if c is not None]
             lowest = np.min([c[0] for c in corners], axis=0) if corners else np.zeros(3)
             highest = np.max([c[1] for c in corners], axis=0) if corners else np.zeros(3)
             self._bounds.append(np.array([lowest, highest]))

@@ -14,7 +14,7 @@ from dofview.scene.gltf.container import Document
 from dofview.scene.gltf.fields import Fields
 from dofview.scene.notes import Notes
 
-COMPONENTS = {
+COMPONENTS: dict[int, np.dtype] = {
     5120: np.dtype("<i1"),
     5121: np.dtype("<u1"),
     5122: np.dtype("<i2"),

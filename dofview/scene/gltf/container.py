@@ -24,7 +24,7 @@ class Document:
     binary: memoryview | None = None
     _lists: dict[str, list[Any]] = field(default_factory=dict)
 
-    def list(self, key: str) -> list[Any]:
+    def entries(self, key: str) -> list[Any]:
         """One of the top-level arrays, as it stands."""
         if key not in self._lists:
             self._lists[key] = self.root.array(key)
@@ -32,29 +32,29 @@ class Document:
 
     def entry(self, key: str, index: int) -> Fields:
         """Object `index` (already checked) of the top-level array `key`."""
-        return Fields(self.list(key)[index], f"{key}[{index}]")
+        return Fields(self.entries(key)[index], f"{key}[{index}]")
 
     def reference(self, owner: Fields, key: str, target: str, required: bool = False) -> int | None:
         """The index under `key` of `owner`, checked against the top-level array `target`; None when there is none."""
         if owner.data.get(key) is None and not required:
             return None
-        count = len(self.list(target))
+        count = len(self.entries(target))
         if count == 0:
             raise ModelError(f"{owner.where}.{key} refers to {target}, and the file has none")
         return owner.integer(key, low=0, high=count - 1)
 
     def references(self, owner: Fields, key: str, target: str) -> list[int]:
         """An array of indices into the top-level array `target`."""
-        values, count = owner.array(key), len(self.list(target))
-        indices = [as_integer(value) for value in values]
-        if any(index is None or not 0 <= index < count for index in indices):
+        values, count = owner.array(key), len(self.entries(target))
+        indices = [index for index in map(as_integer, values) if index is not None and 0 <= index < count]
+        if len(indices) != len(values):
             raise ModelError(f"{owner.where}.{key} is not a list of indices of the {count} {target}")
         return indices
 
 
 def parse(data: bytes) -> Document:
     """Parse the bytes of a .glb or .gltf file."""
-    if not data.lstrip(b"\xef\xbb\xbf \t\r\n"):
+    if not data:
         raise ModelError("is empty")
     text, binary = _split_glb(memoryview(data)) if data[:4] == MAGIC else (data, None)
     document = Document(Fields(_parse_json(bytes(text)), ""), binary)

@@ -39,9 +39,9 @@ def decode(data: memoryview, extension: Fields, account: Account) -> Mesh:
     if faces is None:
         raise ModelError(f"{extension.where} is a Draco point cloud; accepted: a mesh")
     found = {attribute["unique_id"]: np.asarray(attribute["data"]) for attribute in mesh.attributes}
-    names = extension.inside("attributes")
+    names = extension.inside("attributes") or Fields({}, extension.where)
     attributes = {}
-    for name in names.data if names is not None else ():
+    for name in names.data:
         values = found.get(names.integer(name))
         if values is None or values.dtype.kind not in "iuf":
             raise ModelError(f"{extension.where} has no attribute for {name}")

@@ -38,5 +38,5 @@ def check_extensions(document: Document, notes: Notes) -> None:
 
 def note_unread(document: Document, notes: Notes) -> None:
     """Note the animations and skins of the file."""
-    notes.count("animation", "animations", "not shown", len(document.list("animations")))
-    notes.count("skin", "skins", "not applied: shown as modelled", len(document.list("skins")))
+    notes.count("animation", "animations", "not shown", len(document.entries("animations")))
+    notes.count("skin", "skins", "not applied: shown as modelled", len(document.entries("skins")))

@@ -158,8 +158,8 @@ class Geometry:
             positions=made.positions[order],
             triangles=np.arange(len(order), dtype=np.uint32).reshape(-1, 3),
             normals=np.repeat(face_normals(made.positions, made.triangles), 3, axis=0),
-            texcoords=tuple(None if t is None else t[order] for t in made.texcoords),
-            colors=None if made.colors is None else made.colors[order],
+            texcoords=(_reordered(made.texcoords[0], order), _reordered(made.texcoords[1], order)),
+            colors=_reordered(made.colors, order),
         )
 
 
@@ -167,6 +167,10 @@ def has_positions(fields: Fields) -> bool:
     """Tell whether a primitive has positions; without them it is legal, and nothing to draw."""
     attributes = fields.inside("attributes")
     return attributes is not None and attributes.data.get("POSITION") is not None
+
+
+def _reordered(values: np.ndarray | None, order: np.ndarray) -> np.ndarray | None:
+    return None if values is None else values[order]
 
 
 class Source:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from pathlib import PurePosixPath
+from typing import Literal
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from dofview.scene.notes import Notes, one_line
 from dofview.scene.repair import BRIGHTEST
 
 _WRAPS: dict[int, Wrap] = {33071: "clamp", 33648: "mirror", 10497: "repeat"}
+_MAGNIFY: dict[int, Literal["NEAREST", "LINEAR"]] = {9728: "NEAREST", 9729: "LINEAR"}
 _FILTERS = dict(zip((9728, 9729, 9984, 9985, 9986, 9987), MIN_FILTERS, strict=True))
 _ALPHA_MODES: dict[str, AlphaMode] = {"OPAQUE": "OPAQUE", "MASK": "MASK", "BLEND": "BLEND"}
 _NOTHING: dict = {}
@@ -123,9 +125,9 @@ class Materials:
             return Sampler()
         fields = self._document.entry("samplers", index)
         wraps = [_WRAPS.get(fields.integer(key, 10497)) for key in ("wrapS", "wrapT")]
-        magnify = {9728: "NEAREST", 9729: "LINEAR"}.get(fields.integer("magFilter", 9729))
+        magnify = _MAGNIFY.get(fields.integer("magFilter", 9729))
         minify = _FILTERS.get(fields.integer("minFilter", 9987))
-        if None in (*wraps, magnify, minify):
+        if wraps[0] is None or wraps[1] is None or magnify is None or minify is None:
             raise ModelError(f"{fields.where} holds an unknown wrap mode or filter")
         return Sampler(wraps[0], wraps[1], magnify, minify)
 

@@ -17,7 +17,7 @@ from dofview.scene.repair import LARGEST
 
 def walk(document: Document, notes: Notes) -> Iterator[tuple[Fields, np.ndarray]]:
     """Yield each node of the default scene with its (4, 4) float64 world matrix, parents before children."""
-    seen = bytearray(len(document.list("nodes")))
+    seen = bytearray(len(document.entries("nodes")))
     stack = [(index, np.eye(4)) for index in reversed(_roots(document, notes))]
     while stack:
         index, parent = stack.pop()
@@ -35,7 +35,7 @@ def walk(document: Document, notes: Notes) -> Iterator[tuple[Fields, np.ndarray]
 
 
 def _roots(document: Document, notes: Notes) -> list[int]:
-    scenes = document.list("scenes")
+    scenes = document.entries("scenes")
     if not scenes:
         return _parentless(document, notes)
     chosen = document.reference(document.root, "scene", "scenes") or 0
@@ -47,7 +47,7 @@ def _roots(document: Document, notes: Notes) -> list[int]:
 
 
 def _parentless(document: Document, notes: Notes) -> list[int]:
-    count = len(document.list("nodes"))
+    count = len(document.entries("nodes"))
     children: set[int] = set()
     for index in range(count):
         children.update(document.references(document.entry("nodes", index), "children", "nodes"))

@@ -58,7 +58,7 @@ class SceneReader:
     def _mesh_triangles(self) -> int:
         """Triangles of every mesh in the file, shown or not, as the Khronos validator counts them."""
         total = 0
-        for index in range(len(self._document.list("meshes"))):
+        for index in range(len(self._document.entries("meshes"))):
             with suppress(ModelError):  # a mesh that nothing shows may be as broken as it likes
                 total += sum(self._triangle_counts(index))
         return total

@@ -75,9 +75,9 @@ def parse_map(text: str) -> MapReference:
             numbers = _leading_numbers(words[1:-1], _NUMBER_OPTIONS[option])
             words = words[1 + len(numbers) :]
             if option == "-o" and numbers:
-                offset = (*numbers, 0.0)[:2]
+                offset = numbers[0], (*numbers, 0.0)[1]
             elif option == "-s" and numbers:
-                scale = (*numbers, 1.0)[:2]
+                scale = numbers[0], (*numbers, 1.0)[1]
         elif option in _WORD_OPTIONS and len(words) > 2:
             clamp = clamp or (option == "-clamp" and words[1].lower() == "on")
             words = words[2:]

@@ -16,7 +16,7 @@ import numpy as np
 from dofview.errors import ModelError
 from dofview.scene import pictures
 from dofview.scene.files import Folder
-from dofview.scene.model import AlphaMode, Material, Picture, Sampler, Texture
+from dofview.scene.model import AlphaMode, Material, Picture, Sampler, Texture, Wrap
 from dofview.scene.notes import Notes, one_line
 from dofview.scene.obj import library
 from dofview.scene.obj.library import Entry, MapReference
@@ -171,7 +171,7 @@ class Materials:
         """The MTL transform has v upwards, ours downwards: v' = 1 − (s (1 − v) + o)."""
         (su, sv), (ou, ov) = reference.scale, reference.offset
         moved = (su, sv, ou, ov) != (1.0, 1.0, 0.0, 0.0)
-        wrap = "clamp" if reference.clamp else "repeat"
+        wrap: Wrap = "clamp" if reference.clamp else "repeat"
         matrix = np.array([[su, 0.0, ou], [0.0, sv, 1.0 - sv - ov]]) if moved else None
         return Texture(picture, Sampler(wrap, wrap), transform=matrix)
 

@@ -38,8 +38,12 @@ def triangles_of(made: Statements, notes: Notes) -> Triangles:
     rows, owners = triangulate(made.positions, place, counts, notes)
     if not kept.all():
         owners = np.flatnonzero(kept)[owners]
-    columns = (c[rows] if c.strides[0] else np.broadcast_to(c[:1], rows.shape) for c in (place, texcoord, normal))
-    return Triangles(*columns, owners) if len(rows) else Triangles(rows, rows, rows, owners)
+    return Triangles(place[rows], _picked(texcoord, rows), _picked(normal, rows), owners)
+
+
+def _picked(column: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """`column[rows]`, taking no memory for a column in which nothing is given."""
+    return column[rows] if len(rows) == 0 or column.strides[0] else np.broadcast_to(column[:1], rows.shape)
 
 
 def _in_range(indices: np.ndarray, count: int, notes: Notes) -> np.ndarray:

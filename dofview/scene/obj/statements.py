@@ -175,7 +175,7 @@ class _Scanner:
         if self._corners:
             columns = list(zip(*self._corners, strict=True))
             self._corners.clear()
-            made.corners = tuple(map(_joined, columns))
+            made.corners = _joined(columns[0]), _joined(columns[1]), _joined(columns[2])
             made.counts = np.concatenate(self._counts)
         return made
 
