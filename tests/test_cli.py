@@ -342,6 +342,22 @@ def test_without_usable_opengl_the_remedy_is_told(tmp_path: Path, variable: str,
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="needs a limit on memory")
+def test_memory_that_is_not_there_is_one_line(tmp_path: Path, gpu: Gpu):
+    """Images of 0.6 GiB each with 1.5 GiB to be had in all."""
+    if not gpu.software:
+        pytest.skip("limits the memory of a software rasteriser")
+    import resource
+
+    done = subprocess.run(
+        [sys.executable, "-m", "dofview", "render", DEMO, "--method", "mipmap", "--size", "6000x6000",
+         "-o", str(tmp_path / "a.png")], capture_output=True, text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (3 << 29, 3 << 29)),
+    )  # fmt: skip
+    refused(Done(done.returncode, done.stdout, done.stderr), done.returncode, "memory", "smaller")
+    assert done.returncode in (2, 4) and not list(tmp_path.iterdir())
+
+
 def test_an_interrupt_leaves_nothing_and_says_so(tmp_path: Path):
     process = subprocess.Popen(
         [sys.executable, "-m", "dofview", "render", DEMO, "--method", "accumulation", "--views", "60000",
