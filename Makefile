@@ -1,6 +1,6 @@
 # make view   set everything up and open the viewer on a demo scene; without a screen, render it into out/
 # make test   set everything up and run all tests
-# make docs   write the parameter tables of docs/methods anew
+# make docs   make the parameter tables and the pictures of docs/ anew
 # make lint   ruff and mypy
 
 # The first Python on the path that runs and is new enough.
@@ -38,7 +38,7 @@ test: $(VENV)/screen
 	@$(BIN)/python -m pytest
 
 docs: $(VENV)/packages
-	@$(BIN)/python docs/parameters.py
+	@$(BIN)/python docs/parameters.py && $(BIN)/python docs/pictures.py
 
 lint: $(VENV)/packages
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy

@@ -7,20 +7,33 @@ import re
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
+from PIL import Image
 
+from dofview.gl.context import Gpu
 from dofview.methods import METHODS, method
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 
 
-@pytest.fixture(scope="module")
-def generator() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("parameters", ROOT / "docs" / "parameters.py")
+def script(name: str) -> ModuleType:
+    """A script of docs/ as a module."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / "docs" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="module")
+def generator() -> ModuleType:
+    return script("parameters")
+
+
+@pytest.fixture(scope="module")
+def pictures() -> ModuleType:
+    return script("pictures")
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -49,3 +62,13 @@ def test_links_lead_somewhere(page: Path):
     for target in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8")):
         if not target.startswith(("http://", "https://")):
             assert (page.parent / target).exists(), f"{page.name} links to {target}"
+
+
+@pytest.mark.parametrize("name", [name for name in METHODS if name != "pinhole"])
+def test_the_picture_in_the_readme_is_what_is_rendered(gpu: Gpu, pictures: ModuleType, name: str):
+    """A golden image, from Mesa's llvmpipe: at most 1 % of the pixels may be off by more than 4 of 255."""
+    (x, y), (width, height) = pictures.place(pictures.NAMES.index(name)), pictures.TILE
+    golden = np.asarray(Image.open(pictures.PICTURE).crop((x, y, x + width, y + height)), dtype=int)
+    fresh = np.asarray(pictures.tiles(gpu, [name])[name], dtype=int)
+    off = (np.abs(fresh - golden).max(axis=2) > 4).mean()
+    assert off <= 0.01, f"{off:.1%} of the pixels changed; if they should, `make docs` makes the picture anew"
