@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import stat
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
@@ -156,6 +156,14 @@ def apply_view(base: Settings, view: object, where: str, folder: Path | None = N
         return base.with_(**changes)
     except SettingsError as error:
         raise SettingsError(f"{where}: {error}") from error
+
+
+def view_of(settings: Settings) -> dict[str, Any]:
+    """The content of a view file from which `apply_view` makes this view again."""
+    view = {key: getattr(settings, key).model_dump(mode="json") for key, _ in _PARTS}
+    view["image"] = {"size": list(settings.image.size)}
+    view["background_linear"] = list(settings.background_linear)
+    return view
 
 
 def _beside(folder: Path | None, name: str) -> str:

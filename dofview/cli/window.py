@@ -13,8 +13,13 @@ from dofview.scene.load import load
 from dofview.settings import Settings
 
 
-def open_window(spec: str, given: Given, *, view: Path | None, method: str | None, camera: str | None) -> None:
-    """Open the viewer on a scene; GLError where there is no screen to open it on."""
+def open_window(
+    spec: str, given: Given, *, view: Path | None, method: str | None, camera: str | None, safe: bool = False
+) -> None:  # fmt: skip
+    """Open the viewer on a scene; GLError where there is no screen to open it on.
+
+    It is shown as it was last seen, unless something was asked for that would be lost by that.
+    """
     if screen() is None:
         raise GLError(
             "no screen for a window (neither DISPLAY nor WAYLAND_DISPLAY is set); "
@@ -26,7 +31,8 @@ def open_window(spec: str, given: Given, *, view: Path | None, method: str | Non
     from dofview import viewer
 
     try:
-        viewer.run(scene, settings, spec)
+        asked = view is not None or camera is not None or bool(given.keys() & {"lens", "photo", "light"})
+        viewer.run(scene, settings, spec, restore=not asked, safe=safe)
     except ModuleNotFoundError:
         raise
     except ImportError as error:

@@ -6,6 +6,7 @@ rougher surface reflects it (split-sum prefiltering, Karis 2013: GGX around the 
 
 from __future__ import annotations
 
+import functools
 import re
 from pathlib import Path
 
@@ -69,9 +70,21 @@ class Environment:
 
 def load(gpu: Gpu, lighting: Lighting) -> Environment | None:
     """Read and prefilter what `lighting` names; None for the sky, which is a formula. InputError for a bad picture."""
-    if lighting.environment == SKY:
-        return None
-    return Environment(gpu, studio() if lighting.environment == STUDIO else read(Path(lighting.environment)))
+    return None if lighting.environment == SKY else Environment(gpu, prepare(lighting))
+
+
+def prepare(lighting: Lighting) -> np.ndarray:
+    """Read the picture that `lighting` names, (HEIGHT, 2·HEIGHT, 3) linear radiance; InputError for a bad one.
+
+    The last ones are kept, so that a thread may call this before the one that draws needs them.
+    """
+    return _prepared(lighting.stamp())
+
+
+@functools.lru_cache(maxsize=2)
+def _prepared(stamp: tuple[object, ...]) -> np.ndarray:
+    name = str(stamp[0])
+    return _resized(studio() if name == STUDIO else read(Path(name)))
 
 
 def read(path: Path) -> np.ndarray:
@@ -132,6 +145,8 @@ def _texture(gpu: Gpu, pixels: np.ndarray) -> moderngl.Texture:
 
 def _resized(pixels: np.ndarray) -> np.ndarray:
     """(HEIGHT, 2·HEIGHT, 3): the mean of what falls into a texel, or the nearest where the picture is smaller."""
+    if pixels.shape[:2] == (HEIGHT, 2 * HEIGHT):
+        return pixels
     for axis, size in ((0, HEIGHT), (1, 2 * HEIGHT)):
         edges = np.arange(size) * pixels.shape[axis] // size
         if pixels.shape[axis] < size:

@@ -65,6 +65,11 @@ class Folder:
             raise ModelError(f"'{shown}' leads out of the model's folder; accepted: a file inside it")
         return resolved
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Paths of all files read so far."""
+        return tuple(map(str, self._read))
+
     def changed(self) -> bool:
         """Tell whether a file that was read has changed since, or gone."""
         return any(_stamp_of(path) != stamp for path, stamp in self._read.items())

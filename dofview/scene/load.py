@@ -84,7 +84,7 @@ def _load_stable(path: Path, limits: Limits) -> Scene:
                 raise
             continue
         if not folder.changed():
-            return replace(scene, source=str(path))
+            return replace(scene, source=str(path), files=folder.files)
     raise ModelError("changed while it was read; try again when it is written")
 
 

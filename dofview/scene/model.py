@@ -128,6 +128,7 @@ class Scene:
     cameras: tuple[SceneCamera, ...] = ()
     warnings: tuple[str, ...] = ()
     source: str = ""
+    files: tuple[str, ...] = ()  # all that were read for it
     mesh_triangles: int | None = None  # in all meshes of the file, each counted once; None: not from a file with meshes
     _bounds: list[np.ndarray] = field(default_factory=list, repr=False)
 

@@ -6,8 +6,13 @@ from dofview.scene.model import Scene
 from dofview.settings import Settings
 
 
-def run(scene: Scene, settings: Settings, spec: str) -> None:
-    """Open a window on `scene`, which was loaded from `spec`, with `settings` and return when it is closed."""
+def run(scene: Scene, settings: Settings, spec: str, *, restore: bool = False, safe: bool = False) -> None:
+    """Open a window on `scene`, which was loaded from `spec`, with `settings` and return when it is closed.
+
+    With `restore` the last view of the scene takes the place of camera, lens and light; with `safe` nothing that was
+    saved is read or changed.
+    """
+    from dofview.viewer.store import Store, default_path
     from dofview.viewer.window import run as run_window
 
-    run_window(scene, settings, title=f"dofview — {spec}")
+    run_window(scene, settings, spec, restore=restore and not safe, store=Store(None if safe else default_path()))

@@ -1,10 +1,10 @@
-"""Everything a key or a menu can do: one entry each, from which menu, key handling and help come."""
+"""Everything a key or a menu can do: one entry each, from which menus, keys, palette, help and docs come."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from imgui_bundle import imgui
 
@@ -17,7 +17,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Action:
-    """A thing to do: `key` is an imgui key chord (0 for none), `help` one sentence."""
+    """A thing to do: `key` is an imgui key chord (0 for none), `help` one sentence.
+
+    `repeat` does it again while the key is held. `on_release` waits for the key to be let go, and does nothing when a
+    mouse button was pressed meanwhile: then the key was held for what the mouse does.
+    """
 
     name: str
     key: int
@@ -25,6 +29,15 @@ class Action:
     help: str
     run: Callable[[App], None]
     menu: str = "View"
+    repeat: bool = False
+    on_release: bool = False
+
+
+class Gesture(NamedTuple):
+    """What the mouse does over the picture, in words."""
+
+    how: str
+    help: str
 
 
 def _next_method(app: App, step: int) -> None:
@@ -32,45 +45,54 @@ def _next_method(app: App, step: int) -> None:
     app.settings = app.settings.with_(method=METHODS[index])
 
 
-def _reset_view(app: App) -> None:
-    app.settings = app.settings.with_(camera=app.home.camera, lens=app.home.lens)
-
-
 def _ask_for_file(app: App) -> None:
     if not files.has_dialog():
         app.asking_for_path = True
     elif spec := files.ask_for_scene():
-        app.open(spec)
+        app.open_any(spec)
 
 
 CTRL, SHIFT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_shift)
 
 ACTIONS: tuple[Action, ...] = (
-    Action("Open…", CTRL | int(imgui.Key.o), "Ctrl+O", "Open a glTF or OBJ scene.", _ask_for_file, "File"),
+    Action("Open…", CTRL | int(imgui.Key.o), "Ctrl+O",
+           "Open a scene, a picture or whatever else can be dropped.", _ask_for_file, "File"),
     Action("Open path…", CTRL | SHIFT | int(imgui.Key.o), "Ctrl+Shift+O",
-           "Type the path of a scene, or a demo such as demo:rail.",
+           "Type the path of a file to open, or a demo such as demo:rail.",
            lambda app: setattr(app, "asking_for_path", True), "File"),
     Action("Save picture", CTRL | int(imgui.Key.s), "Ctrl+S", "Save the picture as PNG, without the interface.",
            lambda app: app.save_picture(), "File"),
     Action("Quit", CTRL | int(imgui.Key.q), "Ctrl+Q", "Close the window.",
            lambda app: setattr(app, "quitting", True), "File"),
-    Action("Fit", int(imgui.Key.f), "F", "See the whole scene from this direction.", lambda app: app.fit()),
-    Action("Reset view", int(imgui.Key.home), "Home", "Go back to the view the scene was opened with.", _reset_view),
-    Action("Next method", int(imgui.Key.tab), "Tab", "Switch to the next method.", lambda app: _next_method(app, 1)),
-    Action("Previous method", SHIFT | int(imgui.Key.tab), "Shift+Tab", "Switch to the method before.",
+    Action("Next method", int(imgui.Key.m), "M", "Switch to the next method.", lambda app: _next_method(app, 1)),
+    Action("Previous method", SHIFT | int(imgui.Key.m), "Shift+M", "Switch to the method before.",
            lambda app: _next_method(app, -1)),
     Action("Interface", int(imgui.Key.h), "H", "Show or hide the panels.",
            lambda app: setattr(app, "panels_shown", not app.panels_shown)),
 )  # fmt: skip
 
 
+MODIFIERS = CTRL | SHIFT | int(imgui.Key.mod_alt) | int(imgui.Key.mod_super)
+
+
 def run_keys(app: App) -> None:
-    """Run the action whose key was pressed, unless something is being typed."""
-    if imgui.get_io().want_text_input:
+    """Run the action whose key was pressed, unless something is being typed or keys move the camera."""
+    if imgui.get_io().want_text_input or imgui.is_mouse_down(imgui.MouseButton_.right):
         return
     for action in app.actions:
-        if action.key and imgui.is_key_chord_pressed(action.key):
+        if action.key and _pressed(action):
             action.run(app)
+
+
+def _pressed(action: Action) -> bool:
+    io = imgui.get_io()
+    if io.key_mods != action.key & MODIFIERS:
+        return False
+    key = imgui.Key(action.key & ~MODIFIERS)
+    if not action.on_release:
+        return imgui.is_key_pressed(key, action.repeat)
+    began = imgui.get_time() - imgui.internal.get_key_data(key).down_duration_prev
+    return imgui.is_key_released(key) and all(time < began for time in io.mouse_clicked_time)
 
 
 def menu_bar(app: App) -> None:
@@ -84,5 +106,7 @@ def menu_bar(app: App) -> None:
                     action.run(app)
                 if action.menu == menu and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
                     imgui.set_tooltip(action.help)
+            for tool in app.tools:
+                tool.menu(app, menu)
             imgui.end_menu()
     imgui.end_main_menu_bar()

@@ -11,36 +11,58 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import NamedTuple, TypeVar
 
 from dofview.errors import DofviewError
 from dofview.gl.context import Gpu
 from dofview.gl.targets import Image
 from dofview.pipeline import Pipeline, Result
 from dofview.render.display import show
+from dofview.scene.load import DEMO
 from dofview.scene.model import Scene
 from dofview.settings import ImageSettings, Settings
-from dofview.viewer import files, layout, navigation
-from dofview.viewer.actions import ACTIONS, Action, menu_bar, run_keys
+from dofview.viewer import files, layout, viewport
+from dofview.viewer.actions import ACTIONS, Action, Gesture, menu_bar, run_keys
 from dofview.viewer.dialogs import path_dialog
 from dofview.viewer.measure import Measurement, add_views
+from dofview.viewer.store import Store
 from dofview.viewer.tool import Tool
 from dofview.viewer.tools import TOOLS
 
 MESSAGE_S = 8.0
+T = TypeVar("T", bound=Tool)
+
+
+class Loading(NamedTuple):
+    """A scene on its way."""
+
+    spec: str
+    scene: Future[tuple[Scene, Settings]]
+    keep_view: bool
 
 
 class App:
     """What the window shows and what a person can do with it."""
 
-    def __init__(self, gpu: Gpu, scene: Scene, settings: Settings, wake: Callable[[], None] = lambda: None):
+    def __init__(
+        self, gpu: Gpu, scene: Scene, settings: Settings, wake: Callable[[], None] = lambda: None, *,
+        spec: str = "", store: Store | None = None,
+    ):  # fmt: skip
+        """Show `scene`, loaded from `spec`. `wake` draws a frame soon, from any thread; `store` is what was saved."""
         self.gpu = gpu
+        self.spec = spec
+        self.store = store or Store(None)
+        self.interface = self.store.saved.interface
+        self.content_scale = 1.0
         self.settings = settings
         self.home = settings
         self.pipeline = Pipeline(gpu, scene)
         self.tools: tuple[Tool, ...] = tuple(tool() for tool in TOOLS)
         self.actions: tuple[Action, ...] = (*ACTIONS, *(a for tool in self.tools for a in tool.actions()))
+        self.gestures: tuple[Gesture, ...] = (*viewport.GESTURES, *(g for tool in self.tools for g in tool.gestures()))
         self.wake = wake
         self.panels_shown = True
+        self.panels_focused = False
         self.asking_for_path = False
         self.quitting = False
         self.message = ""
@@ -54,7 +76,8 @@ class App:
         self._rendered: object = None
         self._displayed: object = None
         self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="load")
-        self._loading: tuple[str, Future[tuple[Scene, Settings]]] | None = None
+        self._loading: Loading | None = None
+        self._rendered_well = settings
 
     @property
     def scene(self) -> Scene:
@@ -81,6 +104,8 @@ class App:
             menu_bar(self)
         layout.draw(self)
         path_dialog(self)
+        for tool in self.tools:
+            tool.windows(self)
 
     def update(self) -> None:
         """Render what has changed; the interface calls it once it knows the size of the picture."""
@@ -91,9 +116,11 @@ class App:
                 self._render()
             for tool in self.tools:
                 tool.update(self)
+            self._rendered_well = self.settings
         except DofviewError as error:
             self.report(str(error))
             self._rendered = self.picture_key
+            self.settings = self._rendered_well
         key = (self._rendered, self.settings.display)
         if self.result is not None and self._displayed != key:
             self.shown = show(self.gpu, self.result.image, self.settings.display, "shown")
@@ -123,10 +150,22 @@ class App:
             image = ImageSettings(**{**self.settings.image.model_dump(), "size": size})
             self.settings = self.settings.with_(image=image)
 
-    def open(self, spec: str) -> None:
+    def tool(self, kind: type[T]) -> T:
+        """The tool of this class."""
+        return next(tool for tool in self.tools if isinstance(tool, kind))
+
+    def open(self, spec: str, *, keep_view: bool = False) -> None:
         """Load a scene beside the window; the one shown stays until it is there."""
-        self._loading = (spec, self._worker.submit(files.scene_and_view, spec, self.settings))
-        self._loading[1].add_done_callback(lambda _: self.wake())
+        self._loading = Loading(spec, self._worker.submit(files.scene_and_view, spec, self.settings), keep_view)
+        self._loading.scene.add_done_callback(lambda _: self.wake())
+
+    def open_any(self, spec: str) -> None:
+        """Open a demo by its name, or a file of any kind: the first tool that knows it takes it, else it is a scene."""
+        try:
+            if spec.startswith(DEMO) or not any(tool.takes_file(self, Path(spec)) for tool in self.tools):
+                self.open(spec)
+        except DofviewError as error:
+            self.report(str(error))
 
     def save_picture(self, path: Path | None = None) -> None:
         """Save the picture shown as PNG under `path`, or under a new name in the working folder."""
@@ -136,10 +175,6 @@ class App:
             self.report(f"saved {files.save_png(self.shown.pixels(), path)}")
         except DofviewError as error:
             self.report(str(error))
-
-    def fit(self) -> None:
-        """See the whole scene."""
-        self.settings = self.settings.with_(camera=navigation.fit(self.settings.camera, self.scene.bounds))
 
     def reload_shaders(self) -> bool:
         """Take up shader files that were edited; True when the picture is to be drawn again."""
@@ -164,9 +199,9 @@ class App:
         self.pipeline.release()
 
     def _finish_loading(self) -> None:
-        if self._loading is None or not self._loading[1].done():
+        if self._loading is None or not self._loading.scene.done():
             return
-        spec, future = self._loading
+        spec, future, keep_view = self._loading
         self._loading = None
         try:
             scene, settings = future.result()
@@ -174,8 +209,9 @@ class App:
         except DofviewError as error:
             self.report(str(error))
             return
-        self.settings = self.home = settings.with_(image=self.settings.image)
-        self._rendered = None
+        self.spec, self._rendered = spec, None
+        if not keep_view:
+            self.settings = self.home = self._rendered_well = settings.with_(image=self.settings.image)
         for tool in self.tools:
             tool.scene_changed(self)
         notes = f", {len(scene.warnings)} notes" if scene.warnings else ""

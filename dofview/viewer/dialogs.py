@@ -13,7 +13,7 @@ _TYPED = ["demo:"]
 
 
 def path_dialog(app: App) -> None:
-    """Ask for a scene by its path; Enter opens it, Escape leaves all as it was."""
+    """Ask for a file by its path, or a demo by its name; Enter opens it, Escape leaves all as it was."""
     name = "Open path"
     if app.asking_for_path:
         imgui.open_popup(name)
@@ -29,7 +29,7 @@ def path_dialog(app: App) -> None:
     )
     imgui.pop_item_width()
     if entered or imgui.button("Open"):
-        app.open(_TYPED[0].strip())
+        app.open_any(_TYPED[0].strip())
         imgui.close_current_popup()
     imgui.same_line()
     if imgui.button("Cancel") or imgui.is_key_pressed(imgui.Key.escape):

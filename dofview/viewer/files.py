@@ -42,15 +42,16 @@ def scene_and_view(spec: str, settings: Settings) -> tuple[Scene, Settings]:
 
 def save_png(pixels: np.ndarray, path: Path | None = None) -> Path:
     """Save (h, w, 4) 8-bit `pixels` as PNG, whole or not at all, never over a file nobody named."""
-    path = path or _unused_name()
+    path = path or unused_name(".png")
     write_whole(path, lambda part: Picture.fromarray(pixels[..., :3]).save(part, format="PNG"))
     return path
 
 
-def _unused_name() -> Path:
+def unused_name(suffix: str, what: str = "dofview") -> Path:
+    """A new name in the working folder that says when it was made."""
     stamp = datetime.now().strftime("%Y-%m-%d-%H%M%S")
     for number in range(1000):
-        path = Path.cwd() / f"dofview-{stamp}{f'-{number}' if number else ''}.png"
+        path = Path.cwd() / f"{what}-{stamp}{f'-{number}' if number else ''}{suffix}"
         if not path.exists():
             return path
-    raise OutputError(f"{Path.cwd()}: no unused name for a picture")
+    raise OutputError(f"{Path.cwd()}: no unused name for a {suffix} file")

@@ -35,6 +35,7 @@ def draw(app: App) -> None:
         imgui.set_next_window_pos((left + width - panel, top))
         imgui.set_next_window_size((panel, height))
         imgui.begin("settings", None, FIXED | imgui.WindowFlags_.no_title_bar)
+        app.panels_focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows)
         imgui.push_item_width(-9.5 * imgui.get_font_size())
         _panels(app)
         imgui.pop_item_width()

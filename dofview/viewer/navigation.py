@@ -73,3 +73,33 @@ def _rotated(vector: np.ndarray, axis: np.ndarray, angle: float) -> np.ndarray:
 
 def _moved(camera: Camera, **points: np.ndarray) -> Camera:
     return camera.model_copy(update={name: tuple(float(x) for x in point) for name, point in points.items()})
+
+
+def between(a: Camera, b: Camera, share: float) -> Camera:
+    """The camera at `share` of the way from `a` to `b`: turning where both stand, else around the target."""
+    if share >= 1.0:
+        return b
+    vfov_deg = a.vfov_deg + (b.vfov_deg - a.vfov_deg) * share
+    up = _swung(np.asarray(a.up, float), np.asarray(b.up, float), share)
+    arms = [np.subtract(c.position, c.target, dtype=np.float64) for c in (a, b)]
+    arm = _swung(*arms, share)
+    position, target = (
+        np.asarray(x) + np.subtract(y, x) * share for x, y in ((a.position, b.position), (a.target, b.target))
+    )
+    if a.position == b.position:
+        target = position - arm
+    else:
+        position = target + arm
+    return _moved(a.model_copy(update={"vfov_deg": vfov_deg}), position=position, target=target, up=up)
+
+
+def _swung(a: np.ndarray, b: np.ndarray, share: float) -> np.ndarray:
+    """Turn `a` towards `b`, its length growing in proportion."""
+    lengths = np.linalg.norm(a), np.linalg.norm(b)
+    a, b = a / lengths[0], b / lengths[1]
+    angle = math.acos(np.clip(a @ b, -1.0, 1.0))
+    axis = np.cross(a, b)
+    if np.linalg.norm(axis) < 1e-9:
+        axis = np.cross(a, np.eye(3)[np.argmin(np.abs(a))])
+    length = lengths[0] * (lengths[1] / lengths[0]) ** share
+    return _rotated(a, axis / np.linalg.norm(axis), angle * share) * length

@@ -1,8 +1,27 @@
-"""The tools of the viewer, in the order of their panels."""
+"""The tools of the viewer, in the order of their panels and of who is asked first what a file is."""
 
 from __future__ import annotations
 
+from dofview.viewer.cameras import Cameras
+from dofview.viewer.focusing import Focusing
+from dofview.viewer.gaze import Gaze
+from dofview.viewer.interface import Appearance
 from dofview.viewer.measure import Measure
+from dofview.viewer.opening import Opening
+from dofview.viewer.optics import Optics
+from dofview.viewer.palette import Help, Palette
 from dofview.viewer.tool import Tool
+from dofview.viewer.watching import Watching
 
-TOOLS: tuple[type[Tool], ...] = (Measure,)
+TOOLS: tuple[type[Tool], ...] = (
+    Measure,
+    Focusing,
+    Gaze,
+    Optics,
+    Cameras,
+    Watching,
+    Appearance,
+    Palette,
+    Help,
+    Opening,  # last: it takes files that nobody else wants
+)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from dofview.viewer import navigation
+from dofview.viewer.actions import Gesture
 from dofview.viewer.tool import Rect
 
 if TYPE_CHECKING:
@@ -17,6 +18,11 @@ _BUTTONS = (
     imgui.ButtonFlags_.mouse_button_left
     | imgui.ButtonFlags_.mouse_button_right
     | imgui.ButtonFlags_.mouse_button_middle
+)
+GESTURES = (
+    Gesture("left drag", "Turn around the pivot, which is in the middle of the picture."),
+    Gesture("Shift+left drag, middle drag", "Shift the view."),
+    Gesture("wheel", "Come nearer or go away."),
 )
 
 
@@ -44,7 +50,7 @@ def draw(app: App) -> None:
 
 
 def _navigate(app: App, height: float, hovered: bool, active: bool):
-    """Left drag orbits, Shift+left or middle drag pans, right drag and wheel zoom."""
+    """Left drag orbits, Shift+left or middle drag pans, the wheel zooms."""
     io = imgui.get_io()
     camera = app.settings.camera
     if active and (io.mouse_delta.x or io.mouse_delta.y):
@@ -54,8 +60,6 @@ def _navigate(app: App, height: float, hovered: bool, active: bool):
             camera = navigation.pan(camera, -right, down)
         elif left_button:
             camera = navigation.orbit(camera, right * ORBIT_DEG_PER_PICTURE, down * ORBIT_DEG_PER_PICTURE)
-        elif imgui.is_mouse_down(imgui.MouseButton_.right):
-            camera = navigation.zoom(camera, -down * 20.0)
     if hovered and io.mouse_wheel:
         camera = navigation.zoom(camera, io.mouse_wheel)
     return camera

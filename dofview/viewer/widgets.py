@@ -47,6 +47,11 @@ def label(name: str, info: FieldInfo) -> str:
     return f"{words} ({symbol})##{name}" if symbol else f"{words}##{name}"
 
 
+def plain(text: str) -> str:
+    """Text from a file, safe in a label: imgui takes what follows ## for an identifier."""
+    return text.replace("#", "\uff03")
+
+
 def tooltip(name: str, info: FieldInfo) -> str:
     """Description, what is accepted, and the default of a field."""
     lines = [info.description or name.replace("_", " "), f"default {fields.shown(info.default)}"]

@@ -8,8 +8,10 @@ from __future__ import annotations
 import ctypes
 import time
 import warnings
+from pathlib import Path
 
 # isort: off
+import imgui_bundle
 from imgui_bundle import imgui
 import glfw
 
@@ -21,8 +23,11 @@ from dofview.gl.context import REMEDY, REQUIRED, Gpu
 from dofview.scene.model import Scene
 from dofview.settings import Settings
 from dofview.viewer.app import App
+from dofview.viewer.opening import restore_view
+from dofview.viewer.store import Store
 
 SIZE = (1280, 800)
+FONT_PX = 15.0
 IDLE_WAIT_S = 1.0
 SETTLE_S = 0.6
 SETTLE_FRAMES = 8
@@ -30,14 +35,22 @@ SETTLE_FRAMES = 8
 a key pressed and released at once over several frames."""
 
 
-def run(scene: Scene, settings: Settings, *, size: tuple[int, int] = SIZE, title: str = "dofview") -> None:
-    """Open a window on `scene` and return when it is closed."""
-    window = _create(size, title)
+def run(
+    scene: Scene, settings: Settings, spec: str = "", *, restore: bool = False, store: Store | None = None,
+    size: tuple[int, int] = SIZE,
+) -> None:  # fmt: skip
+    """Open a window on `scene`, which was loaded from `spec`, and return when it is closed.
+
+    With `restore` the scene is shown as it was last seen, if it was.
+    """
+    window = _create(size, f"dofview — {spec}" if spec else "dofview")
     handle = window._window
     gpu = Gpu(window.ctx)
     _create_interface(handle)
-    app = App(gpu, scene, settings, wake=glfw.post_empty_event)
-    glfw.set_drop_callback(handle, lambda _, paths: app.open(paths[0]))
+    app = App(gpu, scene, settings, wake=glfw.post_empty_event, spec=spec, store=store)
+    if restore:
+        restore_view(app)
+    glfw.set_drop_callback(handle, lambda _, paths: [app.open_any(path) for path in paths])
     try:
         _loop(window, app)
     finally:
@@ -72,10 +85,11 @@ def _create_interface(handle: object) -> None:
     io = imgui.get_io()
     io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard.value
     io.set_ini_filename("")
-    scale = max(glfw.get_window_content_scale(handle)[0], 0.5)
-    imgui.style_colors_dark()
-    imgui.get_style().font_scale_dpi = scale
-    imgui.get_style().scale_all_sizes(scale)
+    # imgui's built-in font has no Greek, which the papers' symbols need.
+    font = Path(imgui_bundle.__file__).parent / "assets" / "fonts" / "DroidSans.ttf"
+    if font.is_file():
+        io.fonts.add_font_from_file_ttf(str(font), FONT_PX)
+        imgui.get_style().font_size_base = FONT_PX
     imgui.backends.glfw_init_for_opengl(ctypes.cast(handle, ctypes.c_void_p).value or 0, True)
     imgui.backends.opengl3_init("#version 150")
 
@@ -96,6 +110,7 @@ def _loop(window: Window, app: App) -> None:
 
 
 def _draw(window: Window, app: App) -> None:
+    app.content_scale = max(glfw.get_window_content_scale(window._window)[0], 0.5)
     imgui.backends.opengl3_new_frame()
     imgui.backends.glfw_new_frame()
     imgui.new_frame()

@@ -18,6 +18,7 @@ from dofview.framing import opening  # noqa: E402
 from dofview.gl.context import Gpu  # noqa: E402
 from dofview.settings import ImageSettings, Settings  # noqa: E402
 from dofview.viewer.app import App  # noqa: E402
+from dofview.viewer.store import Interface  # noqa: E402
 
 Context = imgui.test_engine.TestContext
 
@@ -36,6 +37,7 @@ class Host:
             settings = Settings(method="pinhole", image=ImageSettings(size=(64, 48)))
             scene = three_planes()
             self.app = App(Gpu(moderngl.create_context()), scene, opening(scene, "", settings))
+            self.app.interface = Interface(reduced_motion=True)
         self.app.gui()
         if self._wanted and self.app.shown is not None:
             self._pixels, self._wanted = self.app.shown.pixels()[..., :3].astype(float), False
