@@ -180,6 +180,7 @@ def test_materials_and_groups(loaded) -> None:
     assert red.roughness == pytest.approx(0.02**0.25)
     assert light.emissive == (5, 4, 3)
     assert (metal.roughness, metal.metallic, metal.alpha_mode, metal.base_color[3]) == (0.25, 1, "BLEND", 0.5)
+    assert all(material.double_sided for material in scene.materials)  # the format knows no back
     assert bare.unlit and bare.base_color == (1, 1, 1, 1)
     assert set(scene.warnings) == {"1 map_Ks texture not shown", "1 blended material shown as cut-out at 0.5"}
 

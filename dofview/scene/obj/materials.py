@@ -2,7 +2,7 @@
 
 Colours are taken as linear numbers, as in glTF. `Pr` and `Pm` are used as they are; without `Pr`, roughness comes from
 the exponent `Ns`: α = sqrt(2 / (Ns + 2)) (Walter et al. 2007), roughness = sqrt(α). Pictures that cannot be used are
-left out with a warning, as in glTF.
+left out with a warning, as in glTF. Faces show from both sides, as the format knows no back.
 """
 
 from __future__ import annotations
@@ -75,7 +75,9 @@ class Materials:
             entry = self._entries.get(name) if name is not None else None
             if entry is None and name is not None:
                 self.notes.say(f"material '{one_line(name, 80)}' is in no library that was read; shown plain")
-            self.made.append(self._material(*entry) if entry else Material(_shown(name), metallic=0.0))
+            self.made.append(
+                self._material(*entry) if entry else Material(_shown(name), metallic=0.0, double_sided=True)
+            )
         return self._slots[name]
 
     def _material(self, entry: Entry, start: Path) -> Material:
@@ -103,6 +105,7 @@ class Materials:
             emissive=emissive,
             emissive_texture=self._texture(maps.get("map_Ke"), start),
             unlit=numbers.get("illum") == (0.0,),
+            double_sided=True,
             alpha_mode=mode,
         )
 
