@@ -83,6 +83,16 @@ def test_the_measured_blur_is_the_one_asked_for(gpu: Gpu, sigma: float, sign: in
     assert 0.98 < math.sqrt(np.mean(variances)) / sigma < 1.08
 
 
+@pytest.mark.parametrize("largest", [0.0, 1e-6, 1.0, 300.0])
+def test_the_papers_settings_work_at_every_aperture(gpu: Gpu, largest: float):
+    color = np.random.default_rng(3).random((33, 47, 3))
+    coc = np.linspace(-largest, 0.9 * largest, 47)[None, :].repeat(33, axis=0)
+    after = picture(gpu, color, coc, PAPER)
+    assert np.isfinite(after).all() and after.min() >= 0.0 and after.max() <= 1.0 + 1e-5
+    if largest < 1e-3:
+        assert np.abs(after - color).max() <= 1e-4
+
+
 @pytest.mark.parametrize("size", [(97, 61), (101, 3), (1, 90)])
 def test_a_ramp_stays_where_it_is_at_odd_sizes(gpu: Gpu, size: tuple[int, int]):
     width, height = size

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from enum import StrEnum
+from typing import NamedTuple
 
 from pydantic import Field
 
@@ -59,46 +60,25 @@ def render(frame: Frame, params: Params) -> Image:
     sigma = frame.lens.radius_as_sigma_fraction if paper else frame.lens.matched_sigma_fraction
     recipe = Recipe(frame, "mipmap", params, sigma=sigma)
     nearest, farthest = frame.coc_range()
-    greatest = sigma * max(abs(nearest), abs(farthest))
-    top = _level(greatest)
-    levels = most_levels(frame.size) if not params.skip else min(math.ceil(top), most_levels(frame.size))
+    top = _level(sigma * max(abs(nearest), abs(farthest)))
+    levels = min(math.ceil(top), most_levels(frame.size)) if params.skip else most_levels(frame.size)
     atlas = Atlas(frame.size, max(levels, 1))
     defines = {"LAST_LEVEL": atlas.levels}
-    if paper:
-        defines["PAPER"] = 1
-    if params.anisotropic:
-        defines["ANISOTROPIC"] = 1
+    defines |= {"PAPER": 1} if paper else {}
+    defines |= {"ANISOTROPIC": 1} if params.anisotropic else {}
 
-    # 1. The pinhole picture and its degree of blurring (DoB).
-    surfaces = frame.pinhole()
-    images = [_pair(recipe, atlas, parity) for parity in (0, 1)]
-    recipe.draw(
-        "prepare.frag", images[0], viewport=atlas.viewport(0),
-        pinhole=surfaces.color, inverse_depth=surfaces.inverse_depth,
-    )  # fmt: skip
-
-    # 2–3. Both pyramids, a level a pass: what is in focus is kept out of the background from here on.
-    for level in range(1, atlas.levels + 1):
-        colors, zbns = images[(level - 1) % 2]
-        _, _, *source_size = atlas.viewport(level - 1)
-        recipe.draw(
-            "reduce.frag", images[level % 2], defines=defines, viewport=atlas.viewport(level),
-            values={
-                "corner": atlas.corner(level), "source_corner": atlas.corner(level - 1),
-                "source_size": tuple(source_size),
-            },
-            colors=colors, zbns=zbns,
-        )  # fmt: skip
+    # 1–3. The pinhole picture with its degree of blurring (DoB), and all that is coarser.
+    even, odd = _pyramids(recipe, atlas, defines)
 
     # 4. Without it the blurred foreground would stop at its silhouette as if cut out.
     foreground: dict[str, Image] = {}
     if params.smooth_foreground and (nearest < 0.0 or not params.skip):
         don = recipe.image("DoN", level_size(frame.size, 1), components=1, linear=True)
         recipe.draw(
-            "neighbours.frag", don, values={**atlas.values(), "top": top}, defines=defines,
-            even_levels=images[0][1], odd_levels=images[1][1],
+            "neighbours.frag", don, values={**atlas.values(), "top": top}, defines=defines, even_levels=even.zbn,
+            odd_levels=odd.zbn,
         )  # fmt: skip
-        foreground = {"don": don, "even_zbn": images[0][1], "odd_zbn": images[1][1]}
+        foreground = {"don": don, "even_zbn": even.zbn, "odd_zbn": odd.zbn}
         defines["SMOOTHED"] = 1
     else:
         frame.gpu.profile.count("mipmap smoothings skipped")
@@ -106,16 +86,42 @@ def render(frame: Frame, params: Params) -> Image:
     # 5. Between the two levels that give each pixel its blur.
     result = recipe.image("result")
     recipe.draw(
-        "blend.frag", result, values=atlas.values(), defines=defines,
-        inverse_depth=surfaces.inverse_depth, even_levels=images[0][0], odd_levels=images[1][0], **foreground,
+        "blend.frag", result, values=atlas.values(), defines=defines, inverse_depth=frame.pinhole().inverse_depth,
+        even_levels=even.colors, odd_levels=odd.colors, **foreground,
     )  # fmt: skip
     return result
 
 
-def _pair(recipe: Recipe, atlas: Atlas, parity: int) -> tuple[Image, Image]:
-    """The colour and the ZBN image of the even or the odd levels."""
-    size, name = atlas.image_size(parity), ("even", "odd")[parity]
-    return tuple(recipe.image(f"{kind} {name} levels", size, linear=True) for kind in ("colour", "ZBN"))
+class Levels(NamedTuple):
+    """The even or the odd levels of both pyramids."""
+
+    colors: Image
+    zbn: Image
+
+
+def _pyramids(recipe: Recipe, atlas: Atlas, defines: dict[str, int]) -> tuple[Levels, Levels]:
+    """Steps 1 to 3: both pyramids, a level a pass. What is in focus is kept out of the background from here on."""
+    held = []
+    for parity, name in enumerate(("even", "odd")):
+        size = atlas.image_size(parity)
+        images = (recipe.image(f"{kind} {name} levels", size, linear=True) for kind in ("colour", "ZBN"))
+        held.append(Levels(*images))
+    surfaces = recipe.frame.pinhole()
+    recipe.draw(
+        "prepare.frag", held[0], viewport=atlas.viewport(0), pinhole=surfaces.color,
+        inverse_depth=surfaces.inverse_depth,
+    )  # fmt: skip
+    for level in range(1, atlas.levels + 1):
+        colors, zbns = held[(level - 1) % 2]
+        values = {
+            "corner": atlas.corner(level), "source_corner": atlas.corner(level - 1),
+            "source_size": level_size(atlas.size, level - 1),
+        }  # fmt: skip
+        recipe.draw(
+            "reduce.frag", held[level % 2], defines=defines, viewport=atlas.viewport(level), values=values,
+            colors=colors, zbns=zbns,
+        )  # fmt: skip
+    return held[0], held[1]
 
 
 def _level(sigma: float) -> float:

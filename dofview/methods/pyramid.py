@@ -129,7 +129,7 @@ def _matted(recipe: Recipe, sub: SubImage) -> Image:
     profile.count("pyramid fills" if filled else "pyramid fills skipped")
 
     def draw(into: Image, *, fill: bool, weigh: bool) -> None:
-        defines = {**({"FILL": 1} if fill else {}), **({} if weigh else {"WHOLE": 1})}
+        defines = {recipe.params.matting.name: 1, **({"FILL": 1} if fill else {}), **({} if weigh else {"WHOLE": 1})}
         values = {**culling, "ramps": sub.ramps}
         recipe.draw("sub_image.frag", into, values=values, defines=defines, **images, **(filled if fill else {}))
 

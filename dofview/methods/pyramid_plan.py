@@ -1,7 +1,7 @@
 """Which sub-images a picture is cut into, and how a pixel's blur decides its weights in them (Kraus 2007, section 3.3).
 
 All in signed σ, pixels: the width of the Gaussian that a pixel is blurred by, negative in front of the focus. It is
-affine in 1/z, so the background at infinity is an ordinary value and no anchor is ill-defined.
+affine in 1/z, so the background at infinity is an ordinary value, and no anchor is ill-defined as the paper's in z are.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ class Matting(StrEnum):
     """How much of a pixel goes into the sub-images around its blur.
 
     PAPER: a pixel between the blurs of i − 1 and i has weight 1 in sub-image i, and what is left and right of it on the
-    ramps in i − 1 and i + 1, 2 in all. Blended over one another, they are opaque where a surface is whole, but at its
-    silhouettes the three count as three surfaces and cover too much.
+    ramps, linear in z, in i − 1 and i + 1: 2 in all. Blended over one another, they are opaque where a surface is
+    whole, but at its silhouettes the three count as three surfaces and cover too much.
 
     PARTITION: only i − 1 and i, with weights that sum to 1, blended into what is left of 1. A surface that is whole is
     opaque, one that covers a part of a pixel covers that part, and one sub-image fewer is needed.

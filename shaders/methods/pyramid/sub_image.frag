@@ -10,9 +10,20 @@ uniform vec4 ramps;  // signed sigma, px, where the weight starts and ends to ri
 
 out vec4 color;
 
+// What the ramps are linear in: sigma, affine in 1/z, or the paper's depth z (in units of the focus distance).
+float place(float sigma)
+{
+#ifdef PAPER
+    float infinity = lens.sigma * coc_radius(0.0);
+    if (infinity > 0.0 && abs(sigma) < 1e20) return 1.0 / max(1.0 - sigma / infinity, 1e-6);
+#endif
+    return sigma;
+}
+
 // 0 before `from`, 1 after `to`; a step where they are one.
 float ramp(float from, float to, float value)
 {
+    from = place(from), to = place(to), value = place(value);
     return to > from ? clamp((value - from) / (to - from), 0.0, 1.0) : step(to, value);
 }
 
