@@ -40,8 +40,9 @@ def render(scene: Scene | str | Path, settings: Settings | None = None, **change
     from dofview.framing import opening
     from dofview.gl.context import create_headless
     from dofview.pipeline import Pipeline
+    from dofview.scene.model import Scene
 
-    loaded = load(scene) if not hasattr(scene, "primitives") else scene
+    loaded = scene if isinstance(scene, Scene) else load(scene)
     chosen = (settings or opening(loaded, str(loaded.source or scene))).with_(**changes)
     gpu = create_headless()
     try:

@@ -14,7 +14,7 @@ from dofview.gl.context import Gpu
 from dofview.gl.pyramids import Analysis
 from dofview.lens import Distribution, Lens
 from dofview.methods import pyramid
-from dofview.methods.pyramid import Params, Radius
+from dofview.methods.pyramid import Blur, Params
 from dofview.methods.pyramid_plan import FAR, Matting, plan
 from dofview.metrics import psnr
 from dofview.pipeline import Pipeline
@@ -23,7 +23,7 @@ from dofview.scene.camera import Camera
 from dofview.scene.demo import build, view
 from dofview.settings import ImageSettings, Settings
 
-PAPER = Params(analysis=Analysis.BOX4, radius=Radius.PAPER, matting=Matting.PAPER)
+PAPER = Params(analysis=Analysis.BOX4, blur=Blur.PAPER, matting=Matting.PAPER)
 
 
 def picture(gpu: Gpu, color: np.ndarray, coc: np.ndarray | float, params: Params | None = None) -> np.ndarray:

@@ -59,7 +59,7 @@ def of_model(
     """One keyword parameter a field, called title__field; its value is None when the flag is not given."""
     found = []
     for name, field in model.model_fields.items():
-        kind = fields.kind(field)
+        kind = fields.kind(field) or str
         notes = [fields.accepted(field), f"default {fields.shown(field.default)}" if defaults else ""]
         how = Parameter(
             name=tuple((names or {}).get(name, (fields.flag(name),))),
@@ -68,9 +68,14 @@ def of_model(
             group=group, show_default=False,
         )  # fmt: skip
         # Text as it was typed, except for a switch, which is there or not.
-        typed = Annotated[(bool if kind is bool else str) | None, how]
+        typed: Any = bool if kind is bool else str
         found.append(
-            inspect.Parameter(f"{title}__{name}", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=typed)
+            inspect.Parameter(
+                f"{title}__{name}",
+                inspect.Parameter.KEYWORD_ONLY,
+                default=None,
+                annotation=Annotated[typed | None, how],
+            )
         )
     return found
 

@@ -33,7 +33,7 @@ STEPS = (("culled", False, False), ("filled", True, False), ("matte", True, True
 """What `inspect` keeps before the blur: name, holes filled, weighted."""
 
 
-class Radius(StrEnum):
+class Blur(StrEnum):
     """How the blur of a sub-image is stated."""
 
     CALIBRATED = "calibrated"
@@ -46,8 +46,8 @@ class Params(BaseParams):
     analysis: Analysis = Field(
         default=Analysis.SPLINE, description="Filter that makes coarser levels: B-spline, 4×4 box (the paper's) or 2×2."
     )
-    radius: Radius = Field(
-        default=Radius.CALIBRATED,
+    blur: Blur = Field(
+        default=Blur.CALIBRATED,
         description="Blur of sub-image i: as measured of its filter, or the paper's 1.7·2^(|i|−1).",
         json_schema_extra={"symbol": "r⁽ⁱ⁾"},
     )
@@ -67,7 +67,7 @@ class Params(BaseParams):
 
 def render(frame: Frame, params: Params) -> Image:
     """Return the picture with depth of field, its sub-images blended from front to back."""
-    paper = params.radius is Radius.PAPER
+    paper = params.blur is Blur.PAPER
     sigma = frame.lens.radius_as_sigma_fraction if paper else frame.lens.matched_sigma_fraction
     recipe = Recipe(frame, "pyramid", params, sigma=sigma)
     subs = _plan(frame, params, sigma)
@@ -98,7 +98,7 @@ def _plan(frame: Frame, params: Params, sigma: float) -> list[SubImage]:
     """The sub-images to make, front to back, without those in which no pixel has weight."""
 
     def blur_of(levels: int) -> float:
-        if params.radius is Radius.PAPER:
+        if params.blur is Blur.PAPER:
             return PAPER_RADIUS * 2.0 ** (levels - 1) if levels else 0.0
         return params.analysis.blur_sigma(levels)
 
