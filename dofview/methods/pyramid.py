@@ -119,7 +119,7 @@ def _matted(recipe: Recipe, sub: SubImage) -> Image:
     images = {"pinhole": surfaces.color, "inverse_depth": surfaces.inverse_depth}
     culling = {"nearest": sub.cull, "soft": sub.soft}
     filled: dict[str, Image] = {}
-    if sub.culls or not recipe.params.skip:
+    if sub.fills or not recipe.params.skip:
         with profile.section("pyramid/fill"):
             pair = pull_push(
                 recipe.gpu, "pyramid/fill", recipe.frame.size, CULLED, textures=images, blocks=recipe.blocks,

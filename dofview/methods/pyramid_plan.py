@@ -36,15 +36,15 @@ class Matting(StrEnum):
 class SubImage:
     """Sub-image `index`: 0 in focus, negative in front, blurred by |index| levels.
 
-    Pixels with σ below `cull` are left out, which there are any of if `culls`. The weight rises from ramps[0] to
-    ramps[1] and falls from ramps[2] to ramps[3]. `soft` says over which σ behind `cull` a pixel comes to be a source of
-    filling, and over which σ in front of it the filling comes to be seen.
+    Pixels with σ below `cull` are left out. The weight rises from ramps[0] to ramps[1] and falls from ramps[2] to
+    ramps[3]. `soft` says over which σ behind `cull` a pixel comes to be a source of filling, and over which σ in front
+    of it the filling comes to be seen in full. `fills` if the scene has pixels before or on the rising ramp.
     """
 
     index: int
     cull: float
     ramps: Ramps
-    culls: bool
+    fills: bool
     soft: tuple[float, float]
 
 
@@ -73,6 +73,7 @@ def plan(
             ramps[1] = ramps[0]
         if index == low:
             ramps[:2] = -FAR, -FAR
-        soft = (0.0, 0.0) if paper else (0.5 * (ramps[1] - ramps[0]), 0.5 * (anchor(index - 1) - anchor(index - 2)))
-        found.append(SubImage(index, ramps[0], tuple(ramps), front < ramps[0], soft))
+        # The paper culls at once, and fills nothing behind what it has not culled.
+        soft = (0.0, 0.0) if paper else (ramps[1] - ramps[0], 0.5 * (anchor(index - 1) - anchor(index - 2)))
+        found.append(SubImage(index, ramps[0], tuple(ramps), front < ramps[0 if paper else 1], soft))
     return found

@@ -3,7 +3,7 @@
 uniform sampler2D pinhole;
 uniform sampler2D inverse_depth;
 uniform float nearest;  // signed sigma, px: what is in front of it is culled
-uniform vec2 soft;      // px of sigma behind and in front of `nearest` over which culling takes effect
+uniform vec2 soft;      // px of sigma behind and in front of `nearest` over which culling comes into effect
 
 // Blur of a pixel as a Gaussian: sigma in pixels, negative in front of the focus.
 float signed_sigma(ivec2 pixel)

@@ -27,23 +27,43 @@ float ramp(float from, float to, float value)
     return to > from ? clamp((value - from) / (to - from), 0.0, 1.0) : step(to, value);
 }
 
+float weight(float sigma)
+{
+#ifdef WHOLE
+    return 1.0;
+#else
+    return ramp(ramps.x, ramps.y, sigma) * (1.0 - ramp(ramps.z, ramps.w, sigma));
+#endif
+}
+
+#ifdef FILL
+// How much of what is filled in at a pixel with `sigma` is seen: all where the pixel is culled. Where it is only partly
+// in this sub-image, as much of the rest as the filling lies behind it, or thin things would hide what they are too
+// blurred to hide. A hole that has just opened begins with this share too, so nothing changes at once.
+float seen(float sigma, float behind)
+{
+#ifdef PAPER
+    return sigma < nearest ? 1.0 : 0.0;
+#else
+    float apart = smoothstep(0.0, 1.0, (behind - sigma) / max(soft.x, 1e-6));
+    float culled = clamp((nearest - sigma) / max(soft.y, 1e-6), 0.0, 1.0);
+    return (1.0 - ramp(ramps.x, ramps.y, sigma)) * mix(apart, 1.0, culled);
+#endif
+}
+#endif
+
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float sigma = signed_sigma(pixel), front = nearest - sigma;
-    color = vec4(texelFetch(pinhole, pixel, 0).rgb, 1.0);
-    if (front > 0.0) {
-        color = vec4(0.0);
+    float sigma = signed_sigma(pixel);
+    color = vec4(0.0);
+    if (sigma >= nearest) color = vec4(texelFetch(pinhole, pixel, 0).rgb, 1.0) * weight(sigma);
 #ifdef FILL
-        vec2 place = gl_FragCoord.xy * 0.5 / vec2(textureSize(coarse_colors, 0));
-        vec4 filled = texture(coarse_colors, place);
-        // Where nothing is known anywhere the hole stays empty. A hole that has just opened was weightless until now, so
-        // its filling begins weightless too.
-        sigma = texture(coarse_extras, place).r / max(filled.a, 1e-6);
-        color = filled / max(filled.a, 1e-6) * min(front / max(soft.y, 1e-6), 1.0);
-#endif
-    }
-#ifndef WHOLE
-    color *= ramp(ramps.x, ramps.y, sigma) * (1.0 - ramp(ramps.z, ramps.w, sigma));
+    vec2 coarse = gl_FragCoord.xy * 0.5 / vec2(textureSize(coarse_colors, 0));
+    vec4 filled = texture(coarse_colors, coarse);
+    // Where nothing is known anywhere, the hole stays empty.
+    float known_share = max(filled.a, 1e-6);
+    float behind = texture(coarse_extras, coarse).r / known_share;
+    color += filled / known_share * seen(sigma, behind) * weight(behind);
 #endif
 }
