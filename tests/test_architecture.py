@@ -25,14 +25,14 @@ LAYERS = (
     ("methods",),
     ("settings", "framing"),
     ("pipeline",),
-    ("export", "bench", "stress"),
+    ("export", "bench", "record", "stress"),
     ("viewer",),
     ("cli",),
 )
 LEVEL = {name: number for number, names in enumerate(LAYERS) for name in names}
 WINDOW_LIBRARIES = {"imgui_bundle", "imgui", "moderngl_window", "glfw", "pyglet"}
 HEAVY_LIBRARIES = {"trimesh", "matplotlib", "scipy", "skimage", "OpenEXR", "av", "flip_evaluator", "DracoPy"}
-GL_LAYERS = ("gl", "render", "methods", "pipeline", "viewer", "bench", "stress")
+GL_LAYERS = ("gl", "render", "methods", "pipeline", "viewer", "bench", "record", "stress")
 
 
 def modules() -> Iterator[tuple[str, ast.Module]]:

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from dofview.scene import navigation
 from dofview.scene.camera import Camera
-from dofview.viewer import navigation
 
 ROOT = Path(__file__).parents[1]
 CAMERA = Camera(position=(1.0, 2.0, 5.0), target=(0.5, 0.5, 0.0), vfov_deg=40.0)

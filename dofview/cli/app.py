@@ -52,6 +52,7 @@ def make_app(chosen: str | None) -> App:
     picture = flags.of_settings(chosen)
     app.default(flags.with_flags(view, picture))
     app.command(flags.with_flags(render, [*flags.of_model("timing", Timing, PACE), *picture]))
+    app.command(flags.with_flags(record, picture))
     app.command(flags.with_flags(compare, [*flags.of_model("comparing", Comparing, PACE), *flags.of_settings(None)]))
     for command in (methods, info, doctor, bench, pick, stress):
         app.command(command)
@@ -82,6 +83,31 @@ def render(
     from dofview.cli.picture import render_to
 
     render_to(scene, output, given, view=view, method=method, camera=camera)
+
+
+def record(
+    scene: Spec, /, *, output: Annotated[Path, Parameter(name=("--output", "-o"))], view: View = None,
+    method: MethodName = None, camera: CameraName = None, path: str = "turntable", seconds: float = 4.0,
+    fps: float = 30.0, focus_from: float | None = None, focus_to: float | None = None, keyframes: Path | None = None,
+    given: Given,
+) -> None:  # fmt: skip
+    """Render a film without a screen. Time is frame / fps: two runs give the same film.
+
+    Parameters
+    ----------
+    output
+        .mp4, .webm, .gif, or a pattern for pictures as frames/%04d.png or .exr.
+    path
+        turntable, rack (focus), keyframes or still.
+    keyframes
+        A JSON list of views, passed through at equal times.
+    """
+    from dofview.cli.recording import record_to
+
+    record_to(
+        scene, output, given, view=view, method=method, camera=camera, kind=path, seconds=seconds, fps=fps,
+        focus_from=focus_from, focus_to=focus_to, keys=keyframes,
+    )  # fmt: skip
 
 
 def compare(
@@ -194,6 +220,6 @@ def _unknown(error: UnknownOptionError, chosen: str | None) -> str:
 
 
 def _hint(tokens: Sequence[str]) -> str:
-    known = ("render", "compare", "methods", "info", "doctor", "bench", "pick", "stress")
+    known = ("render", "record", "compare", "methods", "info", "doctor", "bench", "pick", "stress")
     command = next((t for t in tokens if t in known), "")
     return f"; see dofview {command + ' ' if command else ''}--help"

@@ -31,8 +31,8 @@ class Quality:
 class Reference:
     """A running mean of lens views for one frame.
 
-    With `total` views known in advance the points lie on rings, which are up to 1.4 dB better than a Fibonacci spiral on
-    the demo scenes and symmetric; without, they are a scrambled Sobol sequence that is good at every length.
+    With `total` views known in advance the points lie on rings, which are symmetric and up to 1.4 dB better than a
+    Fibonacci spiral on the demo scenes; without, they are a scrambled Sobol sequence that is good at every length.
     `antialias` also moves each view inside the pixel, in pairs with the spiral.
     """
 

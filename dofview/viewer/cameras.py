@@ -12,8 +12,8 @@ from imgui_bundle import imgui
 
 from dofview.framing import opening
 from dofview.lens import focal_px
+from dofview.scene import navigation
 from dofview.scene.camera import Camera
-from dofview.viewer import navigation
 from dofview.viewer.actions import CTRL, SHIFT, Action, Gesture
 from dofview.viewer.tool import Rect, Tool
 from dofview.viewer.widgets import edit, plain

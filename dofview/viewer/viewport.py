@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from dofview.viewer import navigation
+from dofview.scene import navigation
 from dofview.viewer.actions import Gesture
 from dofview.viewer.tool import Rect
 
