@@ -61,13 +61,18 @@ class Pipeline:
         self.scene = fresh
         self.forget()
 
-    def forget(self) -> None:
-        """Drop all images kept from earlier frames, so that the next frame does its whole work."""
+    def forget(self, *, reference: bool = True) -> None:
+        """Drop all images kept from earlier frames, so that the next frame does its whole work; the `reference` too."""
         self._cache.clear()
-        self._reference = self._reference_key = None
+        if reference:
+            self._reference = self._reference_key = None
 
-    def render(self, settings: Settings, name: str = "picture") -> Result:
-        """Render the picture that `settings` describe into the image called `name`."""
+    def render(self, settings: Settings, name: str = "picture", *, ends_frame: bool = True) -> Result:
+        """Render the picture that `settings` describe into the image called `name`.
+
+        It ends a frame, after which images are released that were not used lately; one that `ends_frame` not stands
+        beside another of the same frame.
+        """
         self.gpu.profile.begin()
         chosen = method(settings.method)
         if self.gpu.version_code < chosen.REQUIRES_GL:
@@ -77,7 +82,8 @@ class Pipeline:
         picture = self._resolve(canvas, frame, settings.image.size, name)
         if self._reference is not None:
             self._reference.touch()
-        self.gpu.targets.collect()
+        if ends_frame:
+            self.gpu.targets.collect()
         return Result(picture, frame, dict(self.gpu.profile.counts))
 
     def reference(self, settings: Settings, *, antialias: bool = False) -> Reference:

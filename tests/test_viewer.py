@@ -85,9 +85,10 @@ def display(tmp_path_factory) -> Iterator[dict[str, str]]:
 
 
 @pytest.mark.window
-def test_every_panel_does_what_it_says(display: dict[str, str]):
+@pytest.mark.parametrize("script", ["panels", "comparing"])
+def test_every_panel_does_what_it_says(display: dict[str, str], script: str):
     done = subprocess.run(
-        [sys.executable, str(ROOT / "tests/ui/panels.py")], env=display, capture_output=True, text=True, timeout=180
+        [sys.executable, str(ROOT / f"tests/ui/{script}.py")], env=display, capture_output=True, text=True, timeout=240
     )
     assert done.returncode == 0, (done.stdout + done.stderr)[-2000:]
 

@@ -79,6 +79,7 @@ class TargetPool:
         self._used: dict[str, int] = {}
         self._depth_used: dict[tuple[int, int, int], int] = {}
         self._clock = 0
+        self.keep_frames = 2
         self._resting = ctx.framebuffer([ctx.renderbuffer((1, 1))])
 
     def image(
@@ -121,9 +122,10 @@ class TargetPool:
         """All living images whose name starts with `prefix`, by name: what a pass browser lists."""
         return [self._images[name] for name in sorted(self._images) if name.startswith(prefix)]
 
-    def collect(self, keep_frames: int = 2) -> None:
-        """End a frame: release what was not asked for in the last `keep_frames` frames."""
+    def collect(self, keep_frames: int | None = None) -> None:
+        """End a frame: release what was not asked for in the last `keep_frames` frames, by default the pool's own."""
         self._clock += 1
+        keep_frames = self.keep_frames if keep_frames is None else keep_frames
         for name in [n for n, used in self._used.items() if used < self._clock - keep_frames]:
             self._release(name)
         for depth in [d for d, used in self._depth_used.items() if used < self._clock - keep_frames]:

@@ -24,9 +24,9 @@ from dofview.settings import ImageSettings, Settings
 from dofview.viewer import files, layout, viewport
 from dofview.viewer.actions import ACTIONS, Action, Gesture, menu_bar, run_keys
 from dofview.viewer.dialogs import path_dialog
-from dofview.viewer.measure import Measurement, add_views
+from dofview.viewer.measurement import Measurement, add_views
 from dofview.viewer.store import Store
-from dofview.viewer.tool import Tool
+from dofview.viewer.tool import Part, Placed, Tool
 from dofview.viewer.tools import TOOLS
 
 MESSAGE_S = 8.0
@@ -69,6 +69,11 @@ class App:
         self.milliseconds: list[float] = []
         self.scene_renders = 0
         self.result: Result | None = None
+        self.passes: dict[str, float] = {}
+        self.timing = False
+        self.generation = 0
+        self.part = Part()
+        self.placed: list[Placed] = []
         self.shown: Image | None = None
         self.accumulated = Measurement()
         self._figures: list[tuple[str, bool]] = []
@@ -181,7 +186,7 @@ class App:
         if not self.gpu.shaders.reload():
             return False
         self.pipeline.forget()
-        self._rendered = None
+        self._rendered, self.generation = None, self.generation + 1
         self.report(self.gpu.shaders.error or "shaders reloaded")
         return True
 
@@ -209,7 +214,7 @@ class App:
         except DofviewError as error:
             self.report(str(error))
             return
-        self.spec, self._rendered = spec, None
+        self.spec, self._rendered, self.generation = spec, None, self.generation + 1
         if not keep_view:
             self.settings = self.home = self._rendered_well = settings.with_(image=self.settings.image)
         for tool in self.tools:
@@ -220,9 +225,12 @@ class App:
     def _render(self) -> None:
         self.gpu.ctx.finish()
         start = time.perf_counter()
+        self.gpu.profile.timing = self.timing
         self.result = self.pipeline.render(self.settings)
+        self.gpu.profile.timing = False
         self.gpu.ctx.finish()
         self.milliseconds = [*self.milliseconds[-119:], (time.perf_counter() - start) * 1e3]
+        self.passes = self.gpu.profile.resolve() if self.timing else {}
         self.scene_renders += 1
         self._rendered = self.picture_key
         self._displayed = None

@@ -95,9 +95,7 @@ class Focusing(Tool):
     def over_picture(self, app: App, rect: Rect, hovered: bool) -> bool:
         io = imgui.get_io()
         if self.shown and self._overlay is not None:
-            texture = imgui.ImTextureRef(self._overlay.texture.glo)
-            corner = (rect.left + rect.width, rect.top + rect.height)
-            imgui.get_window_draw_list().add_image(texture, (rect.left, rect.top), corner, (0.0, 1.0), (1.0, 0.0))
+            rect.draw(imgui.get_window_draw_list(), self._overlay)
             for line in limits(app, self.band.blur_px):
                 app.figure(line)
         if hovered and imgui.is_mouse_clicked(imgui.MouseButton_.left):

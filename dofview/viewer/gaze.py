@@ -209,7 +209,7 @@ class Gaze(Tool):
         app.figure(f"gaze: {'frozen' if self.frozen else state}, focus {self._pull.distance:.4g}", faint=True)
         if self._pull.anchor is not None:
             x, y = self._pull.anchor
-            centre = (rect.left + x * rect.width, rect.top + y * rect.height)
+            centre = rect.place((x, y))
             radius = max(self.settings.fixation_radius * rect.height, 2.0)
             color = 0xFFFFFFFF if self._pull.fixated else 0x80FFFFFF
             imgui.get_window_draw_list().add_circle(centre, radius, color)

@@ -2,68 +2,18 @@
 
 from __future__ import annotations
 
-import math
-import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from dofview.render.reference import Quality, Reference
+from dofview.render.compare import psnr
 from dofview.viewer.actions import Action
+from dofview.viewer.measurement import Measurement
 from dofview.viewer.tool import Rect, Tool
+from dofview.viewer.truth import REFERENCE, Truth, match_panel
 
 if TYPE_CHECKING:
     from dofview.viewer.app import App
-
-MARGIN_DB = 6.0
-"""A method's PSNR within this of the reference's own estimate says more of the reference than of the method."""
-
-FRAME_BUDGET_S = 0.03
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """PSNR in dB of the picture shown against the reference so far."""
-
-    psnr: float = 0.0
-    quality: Quality = Quality(0, 0.0)
-    target_db: float = 50.0
-    most_views: int = 4096
-
-    @property
-    def done(self) -> bool:
-        """Whether more views would not change what is shown."""
-        return self.quality.views >= self.most_views or self.quality.self_psnr >= self.target_db
-
-    @property
-    def trustworthy(self) -> bool:
-        """Whether the reference supports the number: its own error is well below the difference."""
-        return self.quality.self_psnr >= self.psnr + MARGIN_DB or (math.isinf(self.psnr) and self.done)
-
-    @property
-    def progress(self) -> float:
-        """0 to 1 on the way to the target quality, dB over dB."""
-        return min(max(self.quality.self_psnr / self.target_db, self.quality.views / self.most_views), 1.0)
-
-    def psnr_text(self) -> str:
-        """The number as it is shown."""
-        return f"PSNR {self.psnr:.2f} dB" if math.isfinite(self.psnr) else "PSNR: equal"
-
-    def reference_text(self) -> str:
-        """What stands beside every number."""
-        return f"reference: {self.quality.views} views, vouches for {self.quality.self_psnr:.1f} dB"
-
-
-def add_views(app: App, reference: Reference) -> None:
-    """Render views into the reference for a part of a frame's time, at least one."""
-    start = time.perf_counter()
-    while True:
-        reference.add(1)
-        app.scene_renders += 1
-        app.gpu.ctx.finish()
-        if time.perf_counter() - start >= FRAME_BUDGET_S:
-            return
 
 
 class Measure(Tool):
@@ -74,7 +24,6 @@ class Measure(Tool):
 
     def __init__(self) -> None:
         self.on = False
-        self.antialias = False
         self.measurement = Measurement()
         self._of: object = None
 
@@ -91,16 +40,15 @@ class Measure(Tool):
     def update(self, app: App) -> None:
         if not self._active(app):
             return
-        of = (app.picture_key, self.antialias)
+        truth = app.tool(Truth)
+        if app.result is None:
+            return
+        of = (app.picture_key, truth.key(app))
         if of != self._of:
             self._of, self.measurement = of, Measurement()
-        if self.measurement.done or app.result is None:
-            return
-        reference = app.pipeline.reference(app.settings, antialias=self.antialias)
-        add_views(app, reference)
-        if reference.quality().views != self.measurement.quality.views:
-            psnr, quality = app.pipeline.compare(app.result, app.settings, antialias=self.antialias)
-            self.measurement = Measurement(psnr, quality)
+        quality = truth.advance(app)
+        if quality.views != self.measurement.quality.views:
+            self.measurement = Measurement(psnr(app.gpu, app.result.image, truth.picture(app)), quality)
 
     def busy(self, app: App) -> bool:
         return self._active(app) and not self.measurement.done
@@ -113,9 +61,7 @@ class Measure(Tool):
 
     def panel(self, app: App) -> None:
         self.on = imgui.checkbox("compare with the reference##measuring", self.on)[1]
-        self.antialias = imgui.checkbox("antialiased reference##antialias", self.antialias)[1]
-        if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
-            imgui.set_tooltip("Methods are not antialiased by themselves: compare with render scale 2.")
+        match_panel(app, app.tool(Truth))
         if not self._active(app):
             return
         if self.measurement.trustworthy:
@@ -126,4 +72,4 @@ class Measure(Tool):
         imgui.progress_bar(self.measurement.progress, (-1.0, 0.0), "")
 
     def _active(self, app: App) -> bool:
-        return self.on and app.settings.method != "accumulation"
+        return self.on and app.settings.method != REFERENCE

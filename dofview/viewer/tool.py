@@ -9,24 +9,69 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-if TYPE_CHECKING:
-    from imgui_bundle.imgui import ImVec2
+from imgui_bundle import imgui
+from moderngl import LINEAR, NEAREST
 
+if TYPE_CHECKING:
+    from imgui_bundle.imgui import ImDrawList, ImVec2
+
+    from dofview.gl.targets import Image
     from dofview.viewer.actions import Action, Gesture
     from dofview.viewer.app import App
 
 
+class Part(NamedTuple):
+    """The part of a picture that is seen: shares of its width and height, from its upper left."""
+
+    left: float = 0.0
+    top: float = 0.0
+    width: float = 1.0
+    height: float = 1.0
+
+
 class Rect(NamedTuple):
-    """Where the picture is shown, in imgui's coordinates: left, top, width, height."""
+    """Where a picture is shown, in imgui's coordinates: left, top, width, height; and which part of it."""
 
     left: float
     top: float
     width: float
     height: float
+    part: Part = Part()
 
     def share(self, at: ImVec2) -> tuple[float, float]:
         """A place on the screen as shares of the picture's width and height, from its upper left."""
-        return (at.x - self.left) / self.width, (at.y - self.top) / self.height
+        x, y = (at.x - self.left) / self.width, (at.y - self.top) / self.height
+        return self.part.left + x * self.part.width, self.part.top + y * self.part.height
+
+    def place(self, share: tuple[float, float]) -> tuple[float, float]:
+        """Where on the screen a point of the picture is; undoes `share`."""
+        x, y = (share[0] - self.part.left) / self.part.width, (share[1] - self.part.top) / self.part.height
+        return self.left + x * self.width, self.top + y * self.height
+
+    def holds(self, at: ImVec2) -> bool:
+        """Whether a place on the screen is inside."""
+        return 0.0 <= at.x - self.left < self.width and 0.0 <= at.y - self.top < self.height
+
+    def draw(self, draw_list: ImDrawList, image: Image) -> None:
+        """Show the part of an 8-bit image; its pixels stay sharp where they are enlarged."""
+        enlarged = self.width > 1.5 * self.part.width * image.size[0]
+        image.texture.filter = (NEAREST, NEAREST) if enlarged else (LINEAR, LINEAR)
+        left, top, width, height = self.part
+        # OpenGL's first row is the lowest: v runs upwards.
+        corner = (self.left + self.width, self.top + self.height)
+        texture = imgui.ImTextureRef(image.texture.glo)
+        draw_list.add_image(
+            texture, (self.left, self.top), corner, (left, 1.0 - top), (left + width, 1.0 - top - height)
+        )
+
+
+class Placed(NamedTuple):
+    """A picture that is on the screen: its name, its values, and where."""
+
+    label: str
+    image: Image
+    rect: Rect
+    layer: int = 0
 
 
 class Tool:
@@ -50,6 +95,10 @@ class Tool:
 
     def update(self, app: App) -> None:
         """Work on the GPU, after the picture was brought up to date and before it is shown."""
+
+    def draw_picture(self, app: App, rect: Rect, draw_list: ImDrawList) -> bool:
+        """Show something in place of the picture and note it in `app.placed`; True when it did."""
+        return False
 
     def over_picture(self, app: App, rect: Rect, hovered: bool) -> bool:
         """Draw over the picture and take gestures; True keeps the gesture from the camera."""

@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 from dofview.viewer.cameras import Cameras
+from dofview.viewer.compare import Compare
 from dofview.viewer.focusing import Focusing
 from dofview.viewer.gaze import Gaze
+from dofview.viewer.heat import Heat
 from dofview.viewer.interface import Appearance
 from dofview.viewer.measure import Measure
 from dofview.viewer.opening import Opening
 from dofview.viewer.optics import Optics
 from dofview.viewer.palette import Help, Palette
+from dofview.viewer.pictures import Pictures
 from dofview.viewer.tool import Tool
+from dofview.viewer.truth import Truth
 from dofview.viewer.watching import Watching
 
 TOOLS: tuple[type[Tool], ...] = (
+    Truth,
+    Pictures,
     Measure,
+    Compare,
+    Heat,
     Focusing,
     Gaze,
     Optics,

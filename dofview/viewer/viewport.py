@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from dofview.scene import navigation
 from dofview.viewer.actions import Gesture
-from dofview.viewer.tool import Rect
+from dofview.viewer.tool import Placed, Rect
 
 if TYPE_CHECKING:
     from dofview.viewer.app import App
@@ -31,19 +31,23 @@ def draw(app: App) -> None:
     origin = imgui.get_cursor_screen_pos()
     available = imgui.get_content_region_avail()
     factor = imgui.get_io().display_framebuffer_scale
-    rect = Rect(origin.x, origin.y, max(available.x, 1.0), max(available.y, 1.0))
+    rect = Rect(origin.x, origin.y, max(available.x, 1.0), max(available.y, 1.0), app.part)
     app.resize((round(available.x * factor.x), round(available.y * factor.y)))
     # Before the picture is handed to imgui: a resize replaces its texture.
     app.update()
-    if app.shown is not None:
-        # OpenGL's first row is the lowest: v runs upwards.
-        imgui.image(imgui.ImTextureRef(app.shown.texture.glo), available, (0.0, 1.0), (1.0, 0.0))
-        imgui.set_cursor_screen_pos(origin)
+    app.placed = []
+    draw_list = imgui.get_window_draw_list()
+    replaced = any(tool.draw_picture(app, rect, draw_list) for tool in app.tools)
+    if not replaced and app.shown is not None and app.result is not None:
+        rect.draw(draw_list, app.shown)
+        app.placed.append(Placed(app.settings.method, app.result.image, rect))
     imgui.invisible_button("canvas", (rect.width, rect.height), _BUTTONS)
     hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
-    taken = [tool.over_picture(app, rect, hovered) for tool in app.tools]
+    mouse = imgui.get_mouse_pos()
+    pointed_at = next((placed.rect for placed in app.placed if placed.rect.holds(mouse)), rect)
+    taken = [tool.over_picture(app, pointed_at, hovered) for tool in app.tools]
     if not any(taken):
-        camera = _navigate(app, rect.height, hovered, active)
+        camera = _navigate(app, pointed_at.height, hovered, active)
         if camera != app.settings.camera:
             app.settings = app.settings.with_(camera=camera)
     _write_figures(app, rect)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+import time
+import traceback
 from collections.abc import Callable
 from pathlib import Path
 
@@ -18,16 +20,21 @@ from dofview.framing import opening  # noqa: E402
 from dofview.gl.context import Gpu  # noqa: E402
 from dofview.settings import ImageSettings, Settings  # noqa: E402
 from dofview.viewer.app import App  # noqa: E402
-from dofview.viewer.store import Interface  # noqa: E402
+from dofview.viewer.store import Interface, Store  # noqa: E402
 
 Context = imgui.test_engine.TestContext
 
 
 class Host:
-    """The viewer on a small scene. The engine runs a test in a thread without OpenGL, so pictures are read for it."""
+    """The viewer on a small scene. The engine runs a test in a thread without OpenGL, so pictures are read for it.
 
-    def __init__(self) -> None:
+    `after` is called at the end of each frame, where OpenGL is.
+    """
+
+    def __init__(self, store: Store | None = None, spec: str = "") -> None:
         self.app: App | None = None
+        self.store, self.spec = store, spec
+        self.after: Callable[[App], None] = lambda app: None
         self._wanted = False
         self._pixels = np.zeros(0)
 
@@ -36,11 +43,18 @@ class Host:
         if self.app is None:
             settings = Settings(method="pinhole", image=ImageSettings(size=(64, 48)))
             scene = three_planes()
-            self.app = App(Gpu(moderngl.create_context()), scene, opening(scene, "", settings))
+            gpu = Gpu(moderngl.create_context())
+            self.app = App(gpu, scene, opening(scene, "", settings), spec=self.spec, store=self.store)
             self.app.interface = Interface(reduced_motion=True)
-        self.app.gui()
+        try:
+            self.app.gui()
+        except Exception:
+            # imgui would end the process over a missing End() before anyone could read why.
+            traceback.print_exc()
+            raise
         if self._wanted and self.app.shown is not None:
             self._pixels, self._wanted = self.app.shown.pixels()[..., :3].astype(float), False
+        self.after(self.app)
         self.app.gpu.ctx.screen.use()
         assert self.app.gpu.ctx.error == "GL_NO_ERROR"
 
@@ -53,13 +67,34 @@ class Host:
         return self._pixels
 
 
-def drive(test: Callable[[Context, App, Host], None], size: tuple[int, int] = (560, 480)) -> None:
+def drive(
+    test: Callable[[Context, App, Host], None], size: tuple[int, int] = (560, 480), *,
+    store: Store | None = None, spec: str = "",
+) -> None:  # fmt: skip
     """Show the viewer and let `test` use it; a failed assertion or engine error is raised."""
-    host = Host()
+    host = Host(store, spec)
     params = hello_imgui.RunnerParams()
     params.callbacks.show_gui = host.frame
+    params.callbacks.before_exit = lambda: host.app and host.app.release()
     params.app_window_params.window_geometry.size = size
     params.imgui_window_params.default_imgui_window_type = hello_imgui.DefaultImGuiWindowType.no_default_window
     params.fps_idling.enable_idling = False
     params.ini_disable = True
     testing.run(test_function=lambda context: test(context, host.app, host), runner_params=params)
+
+
+def until(context: Context, wanted: Callable[[], bool], what: str, seconds: float = 30.0) -> None:
+    """Let frames pass until `wanted`."""
+    deadline = time.monotonic() + seconds
+    while not wanted():
+        assert time.monotonic() < deadline, what
+        context.yield_()
+
+
+def press(context: Context, name: str, *modifiers: str) -> None:
+    """Press a key by its name in imgui, with modifiers "ctrl", "shift", "alt", and let two frames pass."""
+    chord = int(getattr(imgui.Key, name))
+    for modifier in modifiers:
+        chord |= int(getattr(imgui.Key, f"mod_{modifier}"))
+    context.key_press(chord)
+    context.yield_(2)

@@ -7,6 +7,7 @@ from host import Context, Host, drive
 
 from dofview.methods import METHODS
 from dofview.viewer.app import App
+from dofview.viewer.measure import Measure
 
 
 def use(context: Context, app: App, host: Host) -> None:
@@ -41,7 +42,7 @@ def use(context: Context, app: App, host: Host) -> None:
 
     context.item_check("**/compare with the reference##measuring")
     context.yield_(30)
-    quality = app.tools[0].measurement.quality
+    quality = app.tool(Measure).measurement.quality
     assert quality.views > 0 and np.isfinite(quality.self_psnr)
     context.item_uncheck("**/compare with the reference##measuring")
 

@@ -1,0 +1,143 @@
+"""Wipe, flip, grid, error map and zoom, as a person uses them."""
+
+from __future__ import annotations
+
+import numpy as np
+from host import Context, Host, drive, press, until
+from imgui_bundle import imgui
+
+from dofview.methods import METHODS
+from dofview.viewer.app import App
+from dofview.viewer.compare import Compare, Mode
+from dofview.viewer.heat import Difference, Heat
+from dofview.viewer.pictures import Pictures
+from dofview.viewer.truth import Truth
+
+kept: dict[str, np.ndarray] = {}
+
+
+def read(context: Context, host: Host, name: str) -> np.ndarray:
+    """Pixels of the image `name` of the pool, (h, w, c)."""
+    kept.clear()
+
+    def keep(app: App) -> None:
+        for image in app.gpu.targets.named(name):
+            if image.name == name:
+                kept[name] = image.pixels().astype(float)
+
+    host.after = keep
+    until(context, lambda: name in kept, f"image {name}")
+    host.after = lambda app: None
+    return kept[name]
+
+
+def rests(context: Context, app: App, what: str) -> None:
+    """Nothing is rendered once everything is up to date."""
+    until(context, lambda: not app.busy, f"{what} comes to rest", 120.0)
+    context.yield_(2)
+    renders = app.scene_renders
+    context.yield_(8)
+    assert app.scene_renders == renders, what
+
+
+def use(context: Context, app: App, host: Host) -> None:
+    context.yield_(3)
+    lens = app.settings.lens.model_copy(update={"radius": 0.1, "focus_distance": 5.0})
+    app.settings = app.settings.with_(method="mipmap", lens=lens)
+    wipe(context, app, host)
+    flip(context, app)
+    error_map(context, app, host)
+    grid(context, app, host)
+
+
+def wipe(context: Context, app: App, host: Host) -> None:
+    compare = app.tool(Compare)
+    compare.other = "pinhole"
+    press(context, "w")
+    assert compare.mode is Mode.WIPE
+    rests(context, app, "a wipe")
+    assert [placed.label for placed in app.placed] == ["mipmap", "pinhole"]
+    other = read(context, host, "compare/pinhole")
+    assert np.abs(other - read(context, host, "picture")).max() > 0.01, "two pictures, not one twice"
+    camera, renders, rect = app.settings.camera, app.scene_renders, app.placed[0].rect
+    context.mouse_move_to_pos((rect.left + 0.5 * rect.width, rect.top + 0.3 * rect.height))
+    context.mouse_down(0)
+    context.mouse_move_to_pos((rect.left + 0.25 * rect.width, rect.top + 0.4 * rect.height))
+    context.mouse_up(0)
+    context.yield_(2)
+    assert abs(compare.split - 0.25) < 0.02 and app.settings.camera == camera, "the line moves, the camera does not"
+    assert app.scene_renders == renders, "moving the line renders nothing"
+    app.settings = app.settings.with_(lens=app.settings.lens.model_copy(update={"radius": 0.05}))
+    context.yield_(3)
+    assert app.scene_renders == renders + 2, "another lens: each of the two once"
+    press(context, "n")
+    assert compare.other == METHODS[METHODS.index("pinhole") + 2], "the next, but for the one in use"
+    before = compare.other
+    press(context, "u")
+    assert app.settings.method == before and compare.other == "mipmap"
+    press(context, "u")
+    press(context, "w")
+    assert compare.mode is Mode.ONE
+
+
+def flip(context: Context, app: App) -> None:
+    app.tool(Compare).other = "pinhole"
+    rests(context, app, "one picture")
+    context.key_down(imgui.Key.v)
+    context.yield_(3)
+    assert [placed.label for placed in app.placed] == ["pinhole"]
+    context.key_up(imgui.Key.v)
+    context.yield_(3)
+    assert [placed.label for placed in app.placed] == ["mipmap"]
+    renders = app.scene_renders
+    context.key_down(imgui.Key.v)
+    context.yield_(3)
+    context.key_up(imgui.Key.v)
+    context.yield_(2)
+    assert app.scene_renders == renders, "flipping back and forth renders nothing anew"
+
+
+def error_map(context: Context, app: App, host: Host) -> None:
+    heat, truth = app.tool(Heat), app.tool(Truth)
+    press(context, "e")
+    assert heat.on
+    until(context, lambda: truth.quality.views > 16, "the reference grows")
+    maps = {}
+    for difference in Difference:
+        heat.settings = heat.settings.model_copy(update={"difference": difference})
+        context.yield_(2)
+        maps[difference] = read(context, host, "compare/mipmap shown")
+        legend = read(context, host, "heat legend")
+        assert np.ptp(legend[0].sum(axis=1)) > 200, "the legend runs from one end to the other"
+    for a in Difference:
+        assert maps[a].std() > 0.5, a
+        assert all(np.abs(maps[a] - maps[b]).max() > 3 for b in Difference if b is not a), a
+    heat.settings = heat.settings.model_copy(update={"gain": 1000.0, "difference": Difference.ABSOLUTE})
+    context.yield_(2)
+    assert read(context, host, "compare/mipmap shown").mean() > maps[Difference.ABSOLUTE].mean(), "gain shows more"
+    app.settings = app.settings.with_(method="accumulation")
+    context.yield_(2)
+    assert [placed.label for placed in app.placed] == ["accumulation"], "the reference is shown as it is"
+    app.settings = app.settings.with_(method="mipmap")
+    press(context, "e")
+
+
+def grid(context: Context, app: App, host: Host) -> None:
+    press(context, "k")
+    rests(context, app, "a grid")
+    assert [placed.label for placed in app.placed] == list(METHODS)
+    rects = [placed.rect for placed in app.placed]
+    assert len({(rect.left, rect.top) for rect in rects}) == len(METHODS)
+    pictures, renders = app.tool(Pictures), app.scene_renders
+    app.settings = app.settings.with_(lens=app.settings.lens.model_copy(update={"radius": 0.08}))
+    context.yield_(1)
+    until(context, lambda: not any(pictures.outdated(app, name) for name in METHODS), "every picture follows")
+    assert app.scene_renders - renders >= len(METHODS) - 1
+    assert len(app.gpu.targets.named("compare/")) >= 2 * (len(METHODS) - 2)
+    press(context, "k")
+    rests(context, app, "after the grid")
+
+
+if __name__ == "__main__":
+    drive(use)
+    print("compared")
