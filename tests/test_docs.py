@@ -72,3 +72,16 @@ def test_the_picture_in_the_readme_is_what_is_rendered(gpu: Gpu, pictures: Modul
     fresh = np.asarray(pictures.tiles(gpu, [name])[name], dtype=int)
     off = (np.abs(fresh - golden).max(axis=2) > 4).mean()
     assert off <= 0.01, f"{off:.1%} of the pixels changed; if they should, `make docs` makes the picture anew"
+
+
+@pytest.mark.parametrize("name", ["mipmap", "pyramid"])
+def test_a_comparison_shows_the_method_as_it_is(gpu: Gpu, name: str):
+    """The left third of a page's picture, made again; a different driver may round differently."""
+    comparisons = script("comparisons")
+    scene, distribution, size = comparisons.COMPARED[name]
+    kept = np.asarray(Image.open(comparisons.IMAGES / f"{name}.png")).astype(float)
+    pipeline = comparisons.Pipeline(gpu, comparisons.load(scene))
+    fresh = comparisons.rendered(pipeline, comparisons.seen(scene, distribution, size), name).astype(float)
+    pipeline.release()
+    assert kept.shape == (size[1], 3 * size[0], 3)
+    assert np.mean(np.abs(kept[:, : size[0]] - fresh) > 4.0) < 0.01
