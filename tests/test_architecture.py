@@ -25,7 +25,8 @@ LAYERS = (
     ("methods",),
     ("settings", "framing"),
     ("pipeline",),
-    ("export", "bench", "record", "stress"),
+    ("export",),
+    ("remember", "bench", "record", "stress"),
     ("viewer",),
     ("cli",),
 )

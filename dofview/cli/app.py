@@ -70,8 +70,9 @@ def view(
 
 
 def render(
-    scene: Spec, /, *, output: Annotated[Path, Parameter(name=("--output", "-o"))], view: View = None,
-    method: MethodName = None, camera: CameraName = None, given: Given,
+    scene: Spec | None = None, /, *, output: Annotated[Path, Parameter(name=("--output", "-o"))], view: View = None,
+    method: MethodName = None, camera: CameraName = None, like: Path | None = None, preset: Path | None = None,
+    given: Given,
 ) -> None:  # fmt: skip
     """Render one picture without a screen. The last line printed is a JSON object with its time and counts.
 
@@ -79,10 +80,14 @@ def render(
     ----------
     output
         .png (sRGB), .exr or .npy (float32 linear RGB).
+    like
+        A PNG or EXR saved by dofview: its scene and settings are taken, flags override them.
+    preset
+        A TOML preset of lens, method and parameters.
     """
     from dofview.cli.picture import render_to
 
-    render_to(scene, output, given, view=view, method=method, camera=camera)
+    render_to(scene, output, given, view=view, method=method, camera=camera, like=like, preset=preset)
 
 
 def record(

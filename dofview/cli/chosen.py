@@ -10,6 +10,7 @@ from dofview.cli.flags import Given
 from dofview.errors import SettingsError
 from dofview.framing import opening
 from dofview.lens import Lens, Photographic
+from dofview.remember import read_preset
 from dofview.render.environment import Lighting
 from dofview.scene.model import Scene
 from dofview.settings import LARGEST_SIDE, ImageSettings, Settings, checked, read_view
@@ -19,10 +20,13 @@ _SIZE = re.compile(r"\s*(\d{1,9})\s*[xX×]\s*(\d{1,9})\s*", re.ASCII)
 
 def settings_for(
     scene: Scene, spec: str, given: Given, *, view: Path | None = None, method: str | None = None,
-    camera: str | None = None,
+    camera: str | None = None, preset: Path | None = None,
 ) -> Settings:  # fmt: skip
-    """Settings for `scene`, loaded from `spec`."""
-    return applied(opening(scene, spec, camera=camera), given, view=view, method=method)
+    """Settings for `scene`, loaded from `spec`: its opening view, a preset, a view file, what was typed."""
+    settings = opening(scene, spec, camera=camera)
+    if preset is not None:
+        settings, _ = read_preset(preset, settings)
+    return applied(settings, given, view=view, method=method)
 
 
 def applied(

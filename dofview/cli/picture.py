@@ -14,8 +14,10 @@ from dofview.bench.timing import timed
 from dofview.cli.chosen import applied, settings_for
 from dofview.cli.flags import Given
 from dofview.cli.runs import Timing
+from dofview.errors import InputError
 from dofview.gl.context import create_headless
 from dofview.pipeline import Pipeline
+from dofview.remember import note, read_note, read_preset
 from dofview.scene.load import load
 from dofview.scene.model import Scene
 from dofview.settings import Settings, checked
@@ -24,18 +26,28 @@ MOST_NOTES = 5
 
 
 def render_to(
-    spec: str, output: Path, given: Given, *, view: Path | None, method: str | None, camera: str | None
-) -> None:
+    spec: str | None, output: Path, given: Given, *, view: Path | None, method: str | None, camera: str | None,
+    like: Path | None, preset: Path | None,
+) -> None:  # fmt: skip
     """Render one picture into `output` and print its facts, the last line as JSON."""
     timing = checked(Timing, given.get("timing", {}), "render")
-    applied(Settings(), given, view=view, method=method)
+    remembered = read_note(like) if like is not None else None
+    if spec is None and remembered is not None:
+        spec = remembered.spec
+    if spec is None:
+        raise InputError("render needs a SCENE, or --like PICTURE with one saved by dofview; see dofview render --help")
+    base = _with_preset(remembered.settings if remembered else Settings(), preset)
+    applied(base, given, view=view, method=method)
     export.check_writable(output)
     scene = load(spec)
-    settings = settings_for(scene, spec, given, view=view, method=method, camera=camera)
+    if remembered is not None:
+        settings = applied(base, given, view=view, method=method)
+    else:
+        settings = settings_for(scene, spec, given, view=view, method=method, camera=camera, preset=preset)
     tell_warnings(scene)
     with headless(scene) as pipeline:
         result, milliseconds = timed(pipeline, settings, timing.frames)
-        export.save(output, result.pixels())
+        export.save(output, result.pixels(), note(spec, settings))
         facts = {
             "ms": round(statistics.median(milliseconds), 3),
             "method": settings.method,
@@ -53,6 +65,16 @@ def render_to(
             "output": str(output),
         }
     print(jsonlib.dumps(facts))
+
+
+def _with_preset(settings: Settings, preset: Path | None) -> Settings:
+    """`settings` with a preset; what it says that is of no use is told once."""
+    if preset is None:
+        return settings
+    settings, complaints = read_preset(preset, settings)
+    for complaint in complaints:
+        print(f"dofview: note: {complaint}", file=sys.stderr)
+    return settings
 
 
 @contextmanager
