@@ -16,6 +16,7 @@ from dofview.gl.passes import draw
 from dofview.gl.targets import Image
 from dofview.methods import method
 from dofview.render.compare import psnr
+from dofview.render.display import show
 from dofview.render.environment import Environment, Lighting
 from dofview.render.environment import load as load_environment
 from dofview.render.frame import Frame, FrameCache
@@ -85,6 +86,10 @@ class Pipeline:
         if ends_frame:
             self.gpu.targets.collect()
         return Result(picture, frame, dict(self.gpu.profile.counts))
+
+    def shown(self, result: Result, settings: Settings) -> np.ndarray:
+        """What a screen shows of `result`: (height, width, 3) uint8 after exposure, tone curve and sRGB."""
+        return np.ascontiguousarray(show(self.gpu, result.image, settings.display, "shown once").pixels()[..., :3])
 
     def reference(self, settings: Settings, *, antialias: bool = False) -> Reference:
         """Return the progressive reference for `settings`, begun anew when anything it depends on has changed."""

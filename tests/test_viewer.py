@@ -93,6 +93,15 @@ def test_every_panel_does_what_it_says(display: dict[str, str], script: str):
     assert done.returncode == 0, (done.stdout + done.stderr)[-2000:]
 
 
+@pytest.mark.window
+def test_saving_recording_and_undo(display: dict[str, str], tmp_path: Path):
+    script = str(ROOT / "tests/ui/output.py")
+    done = subprocess.run(
+        [sys.executable, script, str(tmp_path)], env=display, capture_output=True, text=True, timeout=180
+    )
+    assert done.returncode == 0, (done.stdout + done.stderr)[-2000:]
+
+
 class Window:
     """The real program in a real window, used by mouse and keyboard."""
 

@@ -18,6 +18,7 @@ from dofview.errors import InputError
 from dofview.gl.context import create_headless
 from dofview.pipeline import Pipeline
 from dofview.remember import note, read_note, read_preset
+from dofview.render.display import Display
 from dofview.scene.load import load
 from dofview.scene.model import Scene
 from dofview.settings import Settings, checked
@@ -47,7 +48,11 @@ def render_to(
     tell_warnings(scene)
     with headless(scene) as pipeline:
         result, milliseconds = timed(pipeline, settings, timing.frames)
-        export.save(output, result.pixels(), note(spec, settings))
+        if output.suffix.lower() == ".png" and settings.display != Display():
+            shown, remark = pipeline.shown(result, settings), note(spec, settings)
+            export.write_whole(output, lambda part: export.write_png8(part, shown, remark))
+        else:
+            export.save(output, result.pixels(), note(spec, settings))
         facts = {
             "ms": round(statistics.median(milliseconds), 3),
             "method": settings.method,

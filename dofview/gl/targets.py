@@ -122,6 +122,11 @@ class TargetPool:
         """All living images whose name starts with `prefix`, by name: what a pass browser lists."""
         return [self._images[name] for name in sorted(self._images) if name.startswith(prefix)]
 
+    def touch(self, image: Image) -> None:
+        """Count `image` as asked for, so that its contents live through a frame that does not draw it."""
+        if self._images.get(image.name) is image:
+            self._used[image.name] = self._clock
+
     def collect(self, keep_frames: int | None = None) -> None:
         """End a frame: release what was not asked for in the last `keep_frames` frames, by default the pool's own."""
         self._clock += 1

@@ -73,12 +73,18 @@ def record(
     pipeline: Pipeline, path: Path_, frames: int, output: Path, fps: float,
     on_frame: Callable[[int], None] = lambda frame: None,
 ) -> None:  # fmt: skip
-    """Render `frames` frames of `path` into the film `output`. Broken off, what was written stays playable."""
+    """Render `frames` frames of `path` into the film `output`. Broken off, what was written stays playable.
+
+    A film shows what the screen does, exposure and tone curve included; EXR pictures are linear light.
+    """
     size = path(0).image.size
+    linear = output.suffix.lower() == ".exr"
     encoder = Encoder(writer(output, size, fps))
     try:
         for frame in range(frames):
-            encoder.add(pipeline.render(path(frame)).pixels())
+            settings = path(frame)
+            result = pipeline.render(settings)
+            encoder.add(result.pixels() if linear else pipeline.shown(result, settings))
             on_frame(frame + 1)
     except BaseException:
         encoder.abandon()

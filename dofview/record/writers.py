@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from dofview.errors import InputError, OutputError
-from dofview.export import save, to_srgb8
+from dofview.export import save, to_srgb8, write_png8, write_whole
 
 PIECE_FRAMES = 30
 BT709, SRGB_CURVE, LIMITED = 1, 13, 1
@@ -24,7 +24,7 @@ BT709, SRGB_CURVE, LIMITED = 1, 13, 1
 
 
 class Writer(Protocol):
-    """Takes linear RGB frames (h, w, 3) float32 of one size, then is closed."""
+    """Takes frames (h, w, 3) of one size, uint8 as shown or float32 linear light, then is closed."""
 
     def add(self, pixels: np.ndarray) -> None: ...
     def close(self) -> None: ...
@@ -94,7 +94,7 @@ class Video:
         """Append a frame; OutputError when it cannot be written, with what was written kept."""
         import av
 
-        encoded = to_srgb8(pixels)
+        encoded = as_shown(pixels)
         pad = ((0, self._size[1] - encoded.shape[0]), (0, self._size[0] - encoded.shape[1]), (0, 0))
         whole = av.VideoFrame.from_ndarray(np.ascontiguousarray(np.pad(encoded, pad, mode="edge")), format="rgb24")
         frame = whole.reformat(format="yuv420p", dst_colorspace=BT709, dst_color_range=LIMITED)
@@ -139,12 +139,10 @@ class Gif:
         """Append a frame."""
         from PIL import Image
 
-        self._frames.append(Image.fromarray(to_srgb8(pixels)).quantize(256))
+        self._frames.append(Image.fromarray(as_shown(pixels)).quantize(256))
 
     def close(self) -> None:
         """Write all frames."""
-        from dofview.export import write_whole
-
         if self._frames:
             write_whole(self._path, lambda part: self._frames[0].save(
                 part, format="GIF", save_all=True, append_images=self._frames[1:], duration=self._duration_ms, loop=0,
@@ -173,7 +171,11 @@ class Sequence:
 
     def add(self, pixels: np.ndarray) -> None:
         """Write the next picture."""
-        save(self._path.with_name(self._path.name % self._frames), pixels)
+        path = self._path.with_name(self._path.name % self._frames)
+        if pixels.dtype == np.uint8:
+            write_whole(path, lambda part: write_png8(part, pixels))
+        else:
+            save(path, pixels)
         self._frames += 1
 
     def close(self) -> None:
@@ -181,6 +183,11 @@ class Sequence:
 
     def abandon(self) -> None:
         """What is written is whole."""
+
+
+def as_shown(pixels: np.ndarray) -> np.ndarray:
+    """8-bit sRGB of a frame that may be linear light."""
+    return pixels if pixels.dtype == np.uint8 else to_srgb8(pixels)
 
 
 def _reason(error: BaseException) -> str:

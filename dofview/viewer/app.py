@@ -17,6 +17,7 @@ from dofview.errors import DofviewError
 from dofview.gl.context import Gpu
 from dofview.gl.targets import Image
 from dofview.pipeline import Pipeline, Result
+from dofview.remember import note
 from dofview.render.display import show
 from dofview.scene.load import DEMO
 from dofview.scene.model import Scene
@@ -177,7 +178,8 @@ class App:
         if self.shown is None:
             return
         try:
-            self.report(f"saved {files.save_png(self.shown.pixels(), path)}")
+            remark = note(self.spec, self.settings)
+            self.report(f"saved {files.save_png(self.shown.pixels(), path, remark)}")
         except DofviewError as error:
             self.report(str(error))
 

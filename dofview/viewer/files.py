@@ -8,10 +8,9 @@ from datetime import datetime
 from pathlib import Path
 
 import numpy as np
-from PIL import Image as Picture
 
 from dofview.errors import OutputError
-from dofview.export import write_whole
+from dofview.export import write_png8, write_whole
 from dofview.framing import opening
 from dofview.scene.load import load
 from dofview.scene.model import Scene
@@ -40,10 +39,10 @@ def scene_and_view(spec: str, settings: Settings) -> tuple[Scene, Settings]:
     return scene, opening(scene, spec, settings)
 
 
-def save_png(pixels: np.ndarray, path: Path | None = None) -> Path:
+def save_png(pixels: np.ndarray, path: Path | None = None, note: str = "") -> Path:
     """Save (h, w, 4) 8-bit `pixels` as PNG, whole or not at all, never over a file nobody named."""
     path = path or unused_name(".png")
-    write_whole(path, lambda part: Picture.fromarray(pixels[..., :3]).save(part, format="PNG"))
+    write_whole(path, lambda part: write_png8(part, np.ascontiguousarray(pixels[..., :3]), note))
     return path
 
 

@@ -7,10 +7,12 @@ from dofview.viewer.compare import Compare
 from dofview.viewer.focusing import Focusing
 from dofview.viewer.gaze import Gaze
 from dofview.viewer.heat import Heat
+from dofview.viewer.history import History
 from dofview.viewer.interface import Appearance
 from dofview.viewer.measure import Measure
 from dofview.viewer.opening import Opening
 from dofview.viewer.optics import Optics
+from dofview.viewer.output import Output
 from dofview.viewer.palette import Help, Palette
 from dofview.viewer.pictures import Pictures
 from dofview.viewer.tool import Tool
@@ -27,6 +29,8 @@ TOOLS: tuple[type[Tool], ...] = (
     Gaze,
     Optics,
     Cameras,
+    Output,
+    History,
     Watching,
     Appearance,
     Palette,
