@@ -11,12 +11,24 @@ os.environ.setdefault("LP_NUM_THREADS", "2")
 
 from dofview.gl.context import Gpu, create_headless  # noqa: E402
 
+_made: list[Gpu] = []
+
 
 @pytest.fixture(scope="session")
 def session_gpu() -> Iterator[Gpu]:
     gpu = create_headless()
+    _made.append(gpu)
     yield gpu
+    _made.remove(gpu)
     gpu.release()
+
+
+@pytest.fixture(autouse=True)
+def _current_context() -> Iterator[None]:
+    """A command run in this process makes a context of its own and lets it go; the session's is current again."""
+    yield
+    for gpu in _made:
+        gpu.ctx.__enter__()
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -50,8 +50,8 @@ Run = Callable[..., Done]
 
 
 @pytest.fixture
-def run(session_gpu: Gpu, capfd: pytest.CaptureFixture[str]) -> Iterator[Run]:
-    """Run the command line in this process; its own OpenGL context gives way to the session's at the end."""
+def run(session_gpu: Gpu, capfd: pytest.CaptureFixture[str]) -> Run:
+    """Run the command line in this process; its own OpenGL context gives way to the session's after each run."""
 
     def run(*arguments: str) -> Done:
         try:
@@ -60,7 +60,7 @@ def run(session_gpu: Gpu, capfd: pytest.CaptureFixture[str]) -> Iterator[Run]:
             session_gpu.ctx.__enter__()
         return Done(status, *capfd.readouterr())
 
-    yield run
+    return run
 
 
 @pytest.fixture
