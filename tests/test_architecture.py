@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -14,22 +15,10 @@ import dofview
 
 PACKAGE = Path(dofview.__file__).parent
 
-# From the bottom up; a module imports its own line and those above it in this list.
-LAYERS = (
-    ("errors", "data", "fields"),
-    ("lens", "metrics", "focus"),
-    ("scene",),
-    ("bokeh", "rings", "sampling"),
-    ("gl",),
-    ("render",),
-    ("methods",),
-    ("settings", "framing"),
-    ("pipeline",),
-    ("export",),
-    ("remember", "bench", "record", "stress"),
-    ("viewer",),
-    ("cli",),
-)
+PAGE = (PACKAGE.parent / "docs" / "architecture.md").read_text(encoding="utf-8")
+
+# The table of docs/architecture.md, from the bottom up; a module imports its own line and those above it.
+LAYERS = [re.findall(r"`(\w+)/?`", row) for row in re.findall(r"^\| (`.*?) \|", PAGE, re.MULTILINE)]
 LEVEL = {name: number for number, names in enumerate(LAYERS) for name in names}
 WINDOW_LIBRARIES = {"imgui_bundle", "imgui", "moderngl_window", "glfw", "pyglet"}
 HEAVY_LIBRARIES = {"trimesh", "matplotlib", "scipy", "skimage", "OpenEXR", "av", "flip_evaluator", "DracoPy"}
@@ -68,6 +57,11 @@ def test_imports_go_one_way():
             if parts[0] == "dofview" and len(parts) > 1 and LEVEL[parts[1]] > LEVEL[layer(path)]:
                 wrong.append(f"{path} imports {name}")
     assert not wrong
+
+
+def test_the_documented_layers_are_those_there_are():
+    there = {layer(path) for path, _ in modules()}
+    assert set(LEVEL) == there
 
 
 def test_only_the_viewer_knows_of_windows():
