@@ -174,11 +174,14 @@ class Gaze(Tool):
 
     def _follow(self, app: App) -> None:
         """As many steps as time has passed for."""
-        self._seen = self._key(app)
         now, rate = time.monotonic(), self.settings.rate_hz
         due = int((now - self._last) * rate)
+        if due == 0:
+            return
+        self._seen = self._key(app)
         self._last = now if due > MOST_TICKS else self._last + due / rate
-        how = self.settings.model_copy(update=AT_ONCE) if app.interface.reduced_motion else self.settings
+        jump = app.interface.reduced_motion and self._rows is None
+        how = self.settings.model_copy(update=AT_ONCE) if jump else self.settings
         for _ in range(min(due, MOST_TICKS)):
             self._step(app, self._mouse.look, how)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from dofview.settings import Settings
 from dofview.viewer import panels, viewport
 
 if TYPE_CHECKING:
@@ -43,15 +45,22 @@ def draw(app: App) -> None:
 
 
 def _panels(app: App) -> None:
-    opened = imgui.TreeNodeFlags_.default_open
-    if imgui.collapsing_header("Lens", opened):
-        app.settings = panels.lens_panel(app.settings, app.scene.bounds)
-    if imgui.collapsing_header("Method", opened):
-        app.settings = panels.method_panel(app.settings)
-    if imgui.collapsing_header("Picture", opened):
-        app.settings = panels.picture_panel(app.settings)
+    _panel("Lens", True, lambda: _edit(app, panels.lens_panel(app.settings, app.scene.bounds)))
+    _panel("Method", True, lambda: _edit(app, panels.method_panel(app.settings)))
+    _panel("Picture", True, lambda: _edit(app, panels.picture_panel(app.settings)))
     for tool in app.tools:
-        if tool.title and imgui.collapsing_header(tool.title, opened if tool.opened else 0):
-            tool.panel(app)
-    if imgui.collapsing_header("Scene"):
-        panels.scene_panel(app.scene)
+        if tool.title:
+            _panel(tool.title, tool.opened, lambda tool=tool: tool.panel(app))
+    _panel("Scene", False, lambda: panels.scene_panel(app.scene))
+
+
+def _panel(title: str, opened: bool, content: Callable[[], None]) -> None:
+    """A heading that folds; what stands under two of them may be called the same."""
+    if imgui.collapsing_header(title, imgui.TreeNodeFlags_.default_open if opened else 0):
+        imgui.push_id(title)
+        content()
+        imgui.pop_id()
+
+
+def _edit(app: App, settings: Settings) -> None:
+    app.settings = settings

@@ -70,7 +70,7 @@ class Opening(Tool):
                 app.report(f"reading {path.name}")
             case suffix if suffix in PICTURES:
                 bokeh.load(path)
-                lens = app.settings.lens.model_copy(update={"distribution": Distribution.IMAGE, "image": path})
+                lens = app.settings.lens.model_copy(update={"distribution": Distribution.IMAGE, "image": str(path)})
                 app.settings = app.settings.with_(lens=lens)
                 app.report(f"{path.name} is the shape of the aperture")
             case suffix if suffix in VIEWS:

@@ -37,7 +37,8 @@ class Palette(Tool):
         area = imgui.get_main_viewport()
         imgui.set_next_window_pos((area.get_center().x, area.work_pos.y), 0, (0.5, 0.0))
         imgui.set_next_window_size((WIDTH_EM * imgui.get_font_size(), 0.0))
-        if not imgui.begin_popup(name):
+        # The arrows choose from the list while the text field stays active.
+        if not imgui.begin_popup(name, imgui.WindowFlags_.no_nav_inputs):
             return
         if imgui.is_window_appearing():
             imgui.set_keyboard_focus_here()
@@ -65,7 +66,7 @@ class Palette(Tool):
         self._chosen = min(max(self._chosen + moved, 0), max(len(actions) - 1, 0))
         clicked = None
         height = min(len(actions), ROWS) * imgui.get_text_line_height_with_spacing() + imgui.get_text_line_height()
-        imgui.begin_child("##actions", (0.0, height))
+        imgui.begin_child("##actions", (0.0, height), 0, imgui.WindowFlags_.no_nav_inputs)
         right = imgui.get_content_region_avail().x
         for number, action in enumerate(actions):
             if imgui.selectable(f"{action.name}##{number}", number == self._chosen)[0]:

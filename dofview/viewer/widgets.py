@@ -82,7 +82,8 @@ def _float_slider(text: str, value: float, low: float | None, high: float | None
     spread = high / low if low > 0.0 else (high / 1e-3 if low == 0.0 else 1.0)
     if spread >= LOGARITHMIC_FROM:
         flags |= imgui.SliderFlags_.logarithmic
-    decimals = max(0, min(6, 3 - math.floor(math.log10(max(abs(value), 1e-6)))))
     shown = value if math.isfinite(value) else high
-    changed, after = imgui.slider_float(text, shown, low, high, f"%.{decimals}f", flags)
+    decimals = max(0, min(6, 3 - math.floor(math.log10(max(abs(shown), 1e-6)))))
+    format_ = f"%.{decimals}f" if math.isfinite(value) else "infinity"
+    changed, after = imgui.slider_float(text, shown, low, high, format_, flags)
     return after if changed else value

@@ -46,6 +46,10 @@ class Host:
             gpu = Gpu(moderngl.create_context())
             self.app = App(gpu, scene, opening(scene, "", settings), spec=self.spec, store=self.store)
             self.app.interface = Interface(reduced_motion=True)
+            imgui.get_io().config_flags |= imgui.ConfigFlags_.nav_enable_keyboard.value
+            # A slow machine is not a hanging test; whoever runs this script limits its time.
+            engine = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
+            engine.config_watchdog_warning = engine.config_watchdog_kill_test = 1000.0
         try:
             self.app.gui()
         except Exception:
@@ -65,6 +69,14 @@ class Host:
         while self._wanted:
             context.yield_()
         return self._pixels
+
+    def inside(self, context: Context, work: Callable[[App], None]) -> None:
+        """Do `work` where OpenGL is, once, and let two frames pass."""
+        done = []
+        before, self.after = self.after, lambda app: done.append(work(app)) if not done else None
+        until(context, lambda: bool(done), "a frame is drawn")
+        self.after = before
+        context.yield_(2)
 
 
 def drive(
