@@ -95,7 +95,8 @@ class Focusing(Tool):
     def over_picture(self, app: App, rect: Rect, hovered: bool) -> bool:
         io = imgui.get_io()
         if self.shown and self._overlay is not None:
-            rect.draw(imgui.get_window_draw_list(), self._overlay)
+            for place in dict.fromkeys(placed.rect for placed in app.placed):
+                place.draw(imgui.get_window_draw_list(), self._overlay)
             for line in limits(app, self.band.blur_px):
                 app.figure(line)
         if hovered and imgui.is_mouse_clicked(imgui.MouseButton_.left):

@@ -213,6 +213,6 @@ class Gaze(Tool):
         if self._pull.anchor is not None:
             x, y = self._pull.anchor
             centre = rect.place((x, y))
-            radius = max(self.settings.fixation_radius * rect.height, 2.0)
+            radius = max(self.settings.fixation_radius * rect.height / rect.part.height, 2.0)
             color = 0xFFFFFFFF if self._pull.fixated else 0x80FFFFFF
             imgui.get_window_draw_list().add_circle(centre, radius, color)

@@ -9,8 +9,8 @@ from dofview.viewer.app import App
 from dofview.viewer.palette import Help, matching
 from dofview.viewer.store import Interface, Theme
 
-ELSEWHERE = {"Quit", "Open…", "Save picture"}
-"""Closed for the test, and asked of the desktop."""
+ELSEWHERE = {"Quit", "Open…", "Save picture", "Save EXR", "Save preset", "Record", "Compare with the reference"}
+"""What closes the window, asks the desktop or writes files; what compares has a script of its own."""
 
 
 def use(context: Context, app: App, host: Host) -> None:
@@ -121,7 +121,7 @@ def by_keyboard(context: Context, app: App) -> None:
 def every_action(context: Context, app: App, host: Host) -> None:
     good = app.settings = app.settings.with_(method="pinhole")
     for action in app.actions:
-        if action.name in ELSEWHERE:
+        if action.name in ELSEWHERE or action.menu == "Compare":
             continue
         host.inside(context, action.run)
         app.settings = good
