@@ -58,7 +58,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(
     path = tmp_path / f"a{suffix}"
     path.write_bytes(b"old")
 
-    def half(part: Path, pixels: np.ndarray) -> None:
+    def half(part: Path, pixels: np.ndarray, note: str) -> None:
         part.write_bytes(b"half")
         raise OSError(28, "No space left on device")
 
