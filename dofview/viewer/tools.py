@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dofview.viewer.browser import Browser
 from dofview.viewer.cameras import Cameras
 from dofview.viewer.compare import Compare
 from dofview.viewer.focusing import Focusing
@@ -9,12 +10,16 @@ from dofview.viewer.gaze import Gaze
 from dofview.viewer.heat import Heat
 from dofview.viewer.history import History
 from dofview.viewer.interface import Appearance
+from dofview.viewer.judge import Judge
+from dofview.viewer.loupe import Loupe
 from dofview.viewer.measure import Measure
 from dofview.viewer.opening import Opening
 from dofview.viewer.optics import Optics
 from dofview.viewer.output import Output
 from dofview.viewer.palette import Help, Palette
 from dofview.viewer.pictures import Pictures
+from dofview.viewer.plots import Plots
+from dofview.viewer.survey import Survey
 from dofview.viewer.tool import Tool
 from dofview.viewer.truth import Truth
 from dofview.viewer.watching import Watching
@@ -23,8 +28,13 @@ TOOLS: tuple[type[Tool], ...] = (
     Truth,
     Pictures,
     Measure,
+    Judge,
+    Browser,
     Compare,
     Heat,
+    Loupe,
+    Survey,
+    Plots,
     Focusing,
     Gaze,
     Optics,

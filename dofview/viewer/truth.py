@@ -68,6 +68,11 @@ class Truth(Tool):
         """Whether there are as many views as are wanted."""
         return self._key == self.key(app) and Measurement(0.0, self.quality).done
 
+    @property
+    def progress(self) -> float:
+        """0 to 1 on the way to as many views as are wanted."""
+        return Measurement(0.0, self.quality).progress
+
     def picture(self, app: App) -> Image:
         """The mean so far, drawn anew when views were added."""
         self.advance(app)

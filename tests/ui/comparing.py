@@ -8,9 +8,13 @@ from imgui_bundle import imgui
 
 from dofview.methods import METHODS
 from dofview.viewer.app import App
+from dofview.viewer.browser import Browser, groups
 from dofview.viewer.compare import Compare, Mode
 from dofview.viewer.heat import Difference, Heat
+from dofview.viewer.inspect import Channel
+from dofview.viewer.loupe import Loupe
 from dofview.viewer.pictures import Pictures
+from dofview.viewer.tool import Part
 from dofview.viewer.truth import Truth
 
 kept: dict[str, np.ndarray] = {}
@@ -48,6 +52,8 @@ def use(context: Context, app: App, host: Host) -> None:
     flip(context, app)
     error_map(context, app, host)
     grid(context, app, host)
+    loupe(context, app, host)
+    browser(context, app, host)
 
 
 def wipe(context: Context, app: App, host: Host) -> None:
@@ -88,7 +94,7 @@ def flip(context: Context, app: App) -> None:
     assert [placed.label for placed in app.placed] == ["pinhole"]
     context.key_up(imgui.Key.v)
     context.yield_(3)
-    assert [placed.label for placed in app.placed] == ["mipmap"]
+    assert [placed.label for placed in app.placed] == ["mipmap"], (app.placed, app.tool(Browser).on)
     renders = app.scene_renders
     context.key_down(imgui.Key.v)
     context.yield_(3)
@@ -136,6 +142,86 @@ def grid(context: Context, app: App, host: Host) -> None:
     assert len(app.gpu.targets.named("compare/")) >= 2 * (len(METHODS) - 2)
     press(context, "k")
     rests(context, app, "after the grid")
+
+
+def loupe(context: Context, app: App, host: Host) -> None:
+    tool, compare = app.tool(Loupe), app.tool(Compare)
+    compare.other = "pinhole"
+    press(context, "w")
+    rests(context, app, "a wipe again")
+    camera, renders, rect = app.settings.camera, app.scene_renders, app.placed[0].rect
+    place = (float(int(rect.left + 0.6 * rect.width)), float(int(rect.top + 0.4 * rect.height)))
+    context.mouse_move_to_pos(place)
+    before = rect.share(imgui.ImVec2(*place))
+    context.key_down(imgui.Key.mod_alt)
+    context.mouse_wheel_y(4.0)
+    context.yield_(2)
+    assert np.isclose(app.part.width, 1.25**-4) and np.isclose(app.part.height, app.part.width)
+    after = app.placed[0].rect.share(imgui.ImVec2(*place))
+    assert np.allclose(before, after, atol=1e-6), "what is under the cursor stays there"
+    left = app.part.left
+    context.mouse_down(0)
+    context.mouse_move_to_pos((place[0] - 30.0, place[1]))
+    context.mouse_up(0)
+    context.key_up(imgui.Key.mod_alt)
+    context.yield_(2)
+    assert np.isclose(app.part.left - left, 30.0 / rect.width * app.part.width, rtol=0.2), "dragging shifts it"
+    assert app.settings.camera == camera and app.scene_renders == renders, "the camera stays, nothing is rendered"
+    press(context, "home", "alt")
+    assert app.part == Part()
+    context.mouse_move_to_pos(place)
+    press(context, "l")
+    until(context, lambda: len(tool.lines) == 4, "pixel, two pictures and the surface")
+    picture = read(context, host, "picture")
+    x, y = (
+        int(s * n) for s, n in zip(app.placed[0].rect.share(imgui.ImVec2(*place)), picture.shape[1::-1], strict=True)
+    )
+    assert tool.lines[0] == f"pixel {x}, {y}"
+    found = [float(word) for word in tool.lines[1].removeprefix("mipmap: ").split()]
+    assert np.allclose(found, picture[y, x, :3], rtol=1e-3)
+    distance = float(tool.lines[3].split()[1].rstrip(","))
+    wanted = 1.0 / app_inverse_depth(context, app, host, app.placed[0].rect.share(imgui.ImVec2(*place)))
+    assert abs(distance / wanted - 1.0) < 1e-2
+    press(context, "l")
+    assert app.part == Part()
+    press(context, "w")
+
+
+def app_inverse_depth(context: Context, app: App, host: Host, share: tuple[float, float]) -> float:
+    found: list[float] = []
+    host.after = lambda app: found.append(app.pipeline.inverse_depth(app.settings, *share))
+    until(context, lambda: bool(found), "a depth")
+    host.after = lambda app: None
+    return found[0]
+
+
+def browser(context: Context, app: App, host: Host) -> None:
+    tool = app.tool(Browser)
+    assert groups(["a/level 10", "a/level 9", "b"]) == {"a/level": ["a/level 9", "a/level 10"], "b": ["b"]}
+    press(context, "i")
+    for name in METHODS:
+        app.settings = app.settings.with_(method=name)
+        until(context, lambda: not app.busy, f"{name} is rendered", 120.0)
+        context.yield_(2)
+        # The pool is only looked at here, between two frames.
+        images = list(tool.images(app))
+        assert len(images) >= 2, name
+        for image in images:
+            tool.choose(image)
+            context.yield_(2)
+            assert app.placed[0].label == image and tool.inspect.high > tool.inspect.low
+    rests(context, app, "the browser")
+    app.settings = app.settings.with_(method="mipmap")
+    until(context, lambda: app.settings.method == "mipmap" and not app.busy, "back")
+    tool.choose("frame/pinhole")
+    context.yield_(3)
+    wide = read(context, host, "inspected")
+    tool.inspect = tool.inspect.model_copy(update={"channel": Channel.ALPHA})
+    context.yield_(3)
+    alpha = read(context, host, "inspected")
+    assert np.abs(alpha - wide).max() > 20 and np.allclose(alpha[..., 0], alpha[..., 1])
+    press(context, "i")
+    until(context, lambda: [placed.label for placed in app.placed] == ["mipmap"], "the picture is back")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,147 @@
+"""Plots that follow the work: time of each pass, time of each frame, and error against time of every method."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import TYPE_CHECKING
+
+import numpy as np
+from imgui_bundle import imgui, implot
+
+from dofview.bench.pareto import front
+from dofview.viewer.actions import Action
+from dofview.viewer.measurement import Measurement
+from dofview.viewer.survey import Point, Survey
+from dofview.viewer.tool import Tool
+
+if TYPE_CHECKING:
+    from dofview.viewer.app import App
+
+HISTORY = 120
+HEIGHT_EM = 15.0
+QUIET = implot.Flags_.no_mouse_text | implot.Flags_.no_menus
+FIT = implot.AxisFlags_.auto_fit
+
+
+class Plots(Tool):
+    """A window of its own with three plots; passes are timed only while it is open."""
+
+    def __init__(self) -> None:
+        self.shown = False
+        self.history: deque[dict[str, float]] = deque(maxlen=HISTORY)
+        self._of: object = None
+        self._seen = -1
+        self._context: implot.internal.Context | None = None
+
+    def actions(self) -> tuple[Action, ...]:
+        return (
+            Action("Plots", int(imgui.Key.t), "T", "Show the time of passes and frames, and error against time.",
+                   lambda app: self._toggle(), "Compare"),
+        )  # fmt: skip
+
+    def update(self, app: App) -> None:
+        app.timing = self.shown
+        method = app.settings.method
+        if method != self._of:
+            self._of = method
+            self.history.clear()
+        # Every render makes a new dictionary: the same one is the same frame.
+        if self.shown and app.passes and id(app.passes) != self._seen:
+            self._seen = id(app.passes)
+            self.history.append(app.passes)
+
+    def windows(self, app: App) -> None:
+        if not self.shown:
+            return
+        if implot.get_current_context() is None:
+            self._context = implot.create_context()
+        size, area = imgui.get_font_size(), imgui.get_main_viewport()
+        first = imgui.Cond_.first_use_ever
+        imgui.set_next_window_pos((area.work_pos.x + size, area.work_pos.y + 4 * size), first)
+        imgui.set_next_window_size((38 * size, min(52 * size, area.work_size.y - 5 * size)), first)
+        opened, still = imgui.begin("Plots", True)
+        self.shown = bool(still)
+        if opened:
+            self._passes(app)
+            self._frames(app)
+            self._errors(app)
+        imgui.end()
+
+    def release(self) -> None:
+        if self._context is not None:
+            implot.destroy_context(self._context)
+            self._context = None
+
+    def _toggle(self) -> None:
+        self.shown = not self.shown
+
+    def _passes(self, app: App) -> None:
+        """Milliseconds of each pass, one upon another, over the last renderings."""
+        clock = "wall clock around each pass" if app.gpu.profile.clock == "wall" else "timer queries"
+        height = HEIGHT_EM * imgui.get_font_size()
+        if not implot.begin_plot(f"Passes of {app.settings.method}, ms ({clock})##passes", (-1.0, height), QUIET):
+            return
+        implot.setup_axes("rendering", "ms", FIT, FIT)
+        implot.setup_legend(implot.Location_.east, implot.LegendFlags_.outside)
+        count = len(self.history)
+        base = np.zeros(count)
+        number = np.arange(count, dtype=float) - count + 1.0
+        for name in dict.fromkeys(name for frame in self.history for name in frame):
+            top = base + np.array([frame.get(name, 0.0) for frame in self.history])
+            if count > 1:
+                implot.plot_shaded(f"{name}##pass", number, base, top)
+            else:
+                implot.plot_bars(f"{name}##pass", np.array([0.0]), top - base, 0.5)
+            base = top
+        implot.end_plot()
+
+    def _frames(self, app: App) -> None:
+        """Milliseconds of whole renderings."""
+        height = 0.6 * HEIGHT_EM * imgui.get_font_size()
+        if not implot.begin_plot("Frames, ms##frames", (-1.0, height), QUIET | implot.Flags_.no_legend):
+            return
+        implot.setup_axes("rendering", "ms", FIT, FIT)
+        times = np.array(app.milliseconds[-HISTORY:], dtype=float)
+        implot.plot_line("frame##frame", np.arange(len(times), dtype=float) - len(times) + 1.0, times)
+        implot.end_plot()
+
+    def _errors(self, app: App) -> None:
+        """One point for each method, and those that no other beats in time and error."""
+        survey = app.tool(Survey)
+        if survey.running:
+            imgui.progress_bar(survey.progress(app), (-6.0 * imgui.get_font_size(), 0.0), "measuring all")
+            imgui.same_line()
+            if imgui.button("cancel##survey"):
+                survey.cancel()
+        elif imgui.button("measure all##survey"):
+            survey.start(app)
+        if not survey.points:
+            return
+        finite = [point for point in survey.points if math.isfinite(point.psnr)]
+        outdated = survey.outdated(app)
+        imgui.text_disabled(Measurement(0.0, survey.points[0].quality).reference_text())
+        if outdated:
+            imgui.text_disabled("of another view")
+        height = HEIGHT_EM * imgui.get_font_size()
+        if implot.begin_plot("Error against time##errors", (-1.0, height), QUIET):
+            _scatter(finite, survey.points, outdated)
+            implot.end_plot()
+
+
+def _scatter(finite: list[Point], points: list[Point], outdated: bool) -> None:
+    implot.setup_axes("ms", "PSNR, dB", FIT, FIT)
+    implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
+    implot.setup_legend(implot.Location_.east, implot.LegendFlags_.outside)
+    best = [record for record in front(point.record() for point in points) if record["psnr"] is not None]
+    if best:
+        line = implot.Spec()
+        line.line_color = imgui.ImVec4(0.7, 0.7, 0.7, 0.8)
+        xs, ys = (np.array([record[key] for record in best], dtype=float) for key in ("ms", "psnr"))
+        implot.plot_line("none better##front", xs, ys, line)
+    for point in finite:
+        look = implot.Spec()
+        look.marker, look.marker_size = implot.Marker_.circle, 6.0
+        if outdated or not point.trustworthy:
+            look.marker_fill_color = look.marker_line_color = imgui.ImVec4(0.5, 0.5, 0.5, 1.0)
+        implot.plot_scatter(point.method, np.array([point.ms]), np.array([point.psnr]), look)
