@@ -70,11 +70,9 @@ class App:
         self.milliseconds: list[float] = []
         self.scene_renders = 0
         self.result: Result | None = None
-        self.passes: dict[str, float] = {}
-        self.timing = False
+        self.timing, self.passes = False, dict[str, float]()
         self.generation = 0
-        self.part = Part()
-        self.placed: list[Placed] = []
+        self.part, self.placed = Part(), list[Placed]()
         self.shown: Image | None = None
         self.accumulated = Measurement()
         self._figures: list[tuple[str, bool]] = []

@@ -102,11 +102,18 @@ def match_panel(app: App, truth: Truth) -> None:
     if not like and imgui.button("match the antialiasing##matchscale"):
         scale = 2.0 if truth.antialias else 1.0
         app.settings = settings.with_(image=settings.image.model_copy(update={"scale": scale}))
-    words = other(settings.lens.distribution).value.replace("_", " ")
-    truth.other_lens = imgui.checkbox(f"reference of the other lens ({words})##otherlens", truth.other_lens)[1]
+    truth.other_lens = imgui.checkbox("reference of the other lens##otherlens", truth.other_lens)[1]
+    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        imgui.set_tooltip(f"Compare with a {_words(other(settings.lens.distribution))} lens.")
     own = Distribution(natural(settings.method))
-    button = f"use the lens {settings.method} is made for: {own.value.replace('_', ' ')}##ownlens"
-    if settings.lens.distribution != own and imgui.button(button):
-        app.settings = settings.with_(lens=settings.lens.model_copy(update={"distribution": own}))
+    if settings.lens.distribution != own:
+        if imgui.button("the method's own lens##ownlens"):
+            app.settings = settings.with_(lens=settings.lens.model_copy(update={"distribution": own}))
+        imgui.same_line()
+        imgui.text_disabled(_words(own))
     if not like or truth.other_lens:
         imgui.text_disabled("like is not compared with like")
+
+
+def _words(distribution: Distribution) -> str:
+    return distribution.value.replace("_", " ")

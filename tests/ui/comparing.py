@@ -7,6 +7,7 @@ from host import Context, Host, drive, press, until
 from imgui_bundle import imgui
 
 from dofview.methods import METHODS
+from dofview.scene.camera import Camera
 from dofview.viewer.app import App
 from dofview.viewer.browser import Browser, groups
 from dofview.viewer.compare import Compare, Mode
@@ -47,7 +48,7 @@ def rests(context: Context, app: App, what: str) -> None:
 def use(context: Context, app: App, host: Host) -> None:
     context.yield_(3)
     lens = app.settings.lens.model_copy(update={"radius": 0.1, "focus_distance": 5.0})
-    app.settings = app.settings.with_(method="mipmap", lens=lens)
+    app.settings = app.settings.with_(method="mipmap", lens=lens, camera=Camera())
     wipe(context, app, host)
     flip(context, app)
     error_map(context, app, host)

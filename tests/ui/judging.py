@@ -9,6 +9,7 @@ from host import Context, Host, drive, press, until
 
 from dofview import metrics
 from dofview.methods import METHODS
+from dofview.scene.camera import Camera
 from dofview.viewer.app import App
 from dofview.viewer.judge import Judge
 from dofview.viewer.plots import Plots
@@ -20,7 +21,7 @@ def use(context: Context, app: App, host: Host) -> None:
     context.yield_(3)
     lens = app.settings.lens.model_copy(update={"radius": 0.1, "focus_distance": 5.0})
     image = app.settings.image.model_copy(update={"guard_px": 8})
-    app.settings = app.settings.with_(method="pinhole", lens=lens, image=image)
+    app.settings = app.settings.with_(method="pinhole", lens=lens, image=image, camera=Camera())
     judging(context, app, host)
     matching(context, app)
     plots(context, app)
@@ -38,7 +39,7 @@ def judging(context: Context, app: App, host: Host) -> None:
     rows = judge.verdict.rows
     assert list(rows) == ["picture", "focus", "foreground", "background"]
     assert abs(sum(row.share for name, row in rows.items() if name != "picture") - 1.0) < 1e-9, "zones share it out"
-    assert rows["focus"].psnr > rows["foreground"].psnr, rows
+    assert rows["focus"].psnr > rows["foreground"].psnr, "without blur, what is sharp errs least"
     found: dict[str, np.ndarray] = {}
 
     def keep(app: App) -> None:
@@ -72,12 +73,13 @@ def matching(context: Context, app: App) -> None:
     context.yield_(2)
     assert app.settings.image.scale == 1.0
     key = truth.key(app)
-    context.item_check("**/*##otherlens")
+    context.item_check("**/reference of the other lens##otherlens")
     context.yield_(2)
-    assert truth.settings(app).lens.distribution != app.settings.lens.distribution and truth.key(app) != key
-    context.item_uncheck("**/*##otherlens")
+    assert truth.settings(app).lens.distribution != app.settings.lens.distribution
+    assert truth.key(app) != key, (key, truth.key(app))
+    context.item_uncheck("**/reference of the other lens##otherlens")
     context.yield_(2)
-    context.item_click("**/*##ownlens")
+    context.item_click("**/the method's own lens##ownlens")
     context.yield_(2)
     assert app.settings.lens.distribution == "gaussian", "mipmaps blur like a Gaussian lens"
     context.set_ref("")
