@@ -81,9 +81,8 @@ class Browser(Tool):
         image = self.images(app).get(self.name) if self.on else None
         if image is None or self._shown is None:
             return False
-        width, height = image.size
-        scale = min(rect.width / width, rect.height / height)
-        width, height = width * scale, height * scale
+        scale = min(rect.width / image.size[0], rect.height / image.size[1])
+        width, height = image.size[0] * scale, image.size[1] * scale
         place = Rect(rect.left + 0.5 * (rect.width - width), rect.top + 0.5 * (rect.height - height), width, height,
                      rect.part)  # fmt: skip
         place.draw(draw_list, self._shown[1])

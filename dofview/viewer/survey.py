@@ -17,7 +17,7 @@ from dofview.render.reference import Quality
 from dofview.viewer.actions import SHIFT, Action
 from dofview.viewer.measurement import Measurement
 from dofview.viewer.tool import Tool
-from dofview.viewer.truth import NO_VIEWS, REFERENCE, Truth
+from dofview.viewer.truth import REFERENCE, Truth
 
 if TYPE_CHECKING:
     from dofview.viewer.app import App
@@ -119,8 +119,8 @@ class Survey(Tool):
         app.scene_renders += 1
         if len(self._times) <= FRAMES:
             return
-        error = psnr(app.gpu, result.image, truth.picture(app))
-        self._found.append(Point(name, statistics.median(self._times[1:]), error, quality or NO_VIEWS))
+        decibels = psnr(app.gpu, result.image, truth.picture(app))
+        self._found.append(Point(name, statistics.median(self._times[1:]), decibels, quality))
         self._left, self._times = self._left[1:], []
         if not self._left:
             self.points, self.of, self._found = self._found, self._key, []

@@ -45,9 +45,6 @@ class Host:
             scene = three_planes()
             gpu = Gpu(moderngl.create_context())
             self.app = App(gpu, scene, opening(scene, "", settings), spec=self.spec, store=self.store)
-            # On a slow machine the engine would lose patience, and from then on ignore what the test does.
-            engine = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
-            engine.config_watchdog_kill_test = engine.config_watchdog_warning = 1e6
             self.app.interface = Interface(reduced_motion=True)
             imgui.get_io().config_flags |= imgui.ConfigFlags_.nav_enable_keyboard.value
             # A slow machine is not a hanging test; whoever runs this script limits its time.
