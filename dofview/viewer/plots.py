@@ -78,6 +78,9 @@ class Plots(Tool):
 
     def _passes(self, app: App) -> None:
         """Milliseconds of each pass, one upon another, over the last renderings."""
+        if not self.history:
+            imgui.text_disabled("Passes are timed from the next rendering on.")
+            return
         clock = "wall clock around each pass" if app.gpu.profile.clock == "wall" else "timer queries"
         height = HEIGHT_EM * imgui.get_font_size()
         if not implot.begin_plot(f"Passes of {app.settings.method}, ms ({clock})##passes", (-1.0, height), QUIET):

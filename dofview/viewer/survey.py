@@ -14,7 +14,7 @@ from dofview.errors import DofviewError
 from dofview.methods import METHODS, method
 from dofview.render.compare import psnr
 from dofview.render.reference import Quality
-from dofview.viewer.actions import SHIFT, Action
+from dofview.viewer.actions import Action
 from dofview.viewer.measurement import Measurement
 from dofview.viewer.tool import Tool
 from dofview.viewer.truth import REFERENCE, Truth
@@ -58,7 +58,7 @@ class Survey(Tool):
 
     def actions(self) -> tuple[Action, ...]:
         return (
-            Action("Measure all", SHIFT | int(imgui.Key.t), "Shift+T",
+            Action("Measure all", int(imgui.Key.f7), "F7",
                    "Time every method and compare it with the reference, for this view.", self.start, "Compare"),
         )  # fmt: skip
 

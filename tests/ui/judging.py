@@ -101,16 +101,16 @@ def plots(context: Context, app: App) -> None:
 
 def measure_all(context: Context, app: App) -> None:
     survey = app.tool(Survey)
-    press(context, "t", "shift")
+    press(context, "f7")
     assert survey.running
     survey.cancel()
     context.yield_(2)
     assert not survey.running and not survey.points
-    press(context, "t", "shift")
+    press(context, "f7")
     app.settings = app.settings.with_(lens=app.settings.lens.model_copy(update={"radius": 0.05}))
     context.yield_(3)
     assert not survey.running and "stopped" in app.message, "another view is another survey"
-    press(context, "t", "shift")
+    press(context, "f7")
     until(context, lambda: not survey.running, "measure all", 170.0)
     assert [point.method for point in survey.points] == [name for name in METHODS if name != "accumulation"]
     assert all(point.ms > 0.0 and math.isfinite(point.psnr) for point in survey.points)
