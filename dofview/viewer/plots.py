@@ -133,8 +133,13 @@ class Plots(Tool):
 
 
 def _scatter(finite: list[Point], points: list[Point], outdated: bool) -> None:
-    implot.setup_axes("ms", "PSNR, dB", FIT, FIT)
+    implot.setup_axes("ms", "PSNR, dB")
     implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
+    if finite:
+        # A logarithmic axis does not fit itself to its points in the first frame, after which the window may rest.
+        times, decibels = [point.ms for point in finite], [point.psnr for point in finite]
+        limits = min(times) / 2.0, max(times) * 2.0, min(decibels) - 3.0, max(decibels) + 3.0
+        implot.setup_axes_limits(*limits, implot.Cond_.always)
     implot.setup_legend(implot.Location_.east, implot.LegendFlags_.outside)
     best = [record for record in front(point.record() for point in points) if record["psnr"] is not None]
     if best:
