@@ -51,7 +51,6 @@ class Recipe:
         self.frame = frame
         self.gpu = frame.gpu
         self.name = name
-        self.params = params
         lens = frame.lens_block if sigma is None else frame.lens_block.model_copy(update={"sigma": sigma})
         self.blocks: dict[str, BaseModel] = {"Lens": lens, "Params": params}
 
@@ -66,12 +65,14 @@ class Recipe:
         self, shader: str, into: Image | Sequence[Image], *, values: Mapping[str, object] | None = None,
         defines: Mapping[str, object] | None = None, blocks: Mapping[str, BaseModel] | None = None,
         blend: tuple | None = None, clear: bool = False, viewport: tuple[int, int, int, int] | None = None,
-        **textures: Image,
+        images: Mapping[str, Image] | None = None, **textures: Image,
     ) -> None:  # fmt: skip
-        """Run `shader` of the method's folder (or of shaders/ when it has a folder of its own) into `into`."""
+        """Run `shader` of the method's folder (or of shaders/ when it has a folder of its own) into `into`. It reads
+        `textures`, and `images` where their names are not known beforehand."""
         path = shader if "/" in shader else f"methods/{self.name}/{shader}"
         with self.gpu.profile.section(f"{self.name}/{path.rsplit('/', 1)[-1].removesuffix('.frag')}"):
             draw(
-                self.gpu, path, into, textures=textures, blocks={**self.blocks, **(blocks or {})}, values=values,
-                defines=defines, blend=blend, clear=clear, viewport=viewport,
+                self.gpu, path, into, textures={**textures, **(images or {})},
+                blocks={**self.blocks, **(blocks or {})}, values=values, defines=defines, blend=blend, clear=clear,
+                viewport=viewport,
             )  # fmt: skip

@@ -87,7 +87,7 @@ def render(frame: Frame, params: Params) -> Image:
     result = recipe.image("result")
     recipe.draw(
         "blend.frag", result, values=atlas.values(), defines=defines, inverse_depth=frame.pinhole().inverse_depth,
-        even_levels=even.colors, odd_levels=odd.colors, **foreground,
+        even_levels=even.colors, odd_levels=odd.colors, images=foreground,
     )  # fmt: skip
     return result
 

@@ -73,10 +73,10 @@ def render(frame: Frame, params: Params) -> Image:
     subs = _plan(frame, params, sigma)
     blended: Image | None = None
     for number, sub in enumerate(subs):
-        matted = _matted(recipe, sub)
+        matted = _matted(recipe, params, sub)
         levels = abs(sub.index)
         # The last enlargement, to the size of the picture, is left to the blending.
-        blurred = _blurred(recipe, matted, levels) if levels else matted
+        blurred = _blurred(recipe, params.analysis, matted, levels) if levels else matted
         if params.inspect:
             image = recipe.image(f"sub-image {sub.index:+d} blurred")
             if levels:
@@ -88,7 +88,7 @@ def render(frame: Frame, params: Params) -> Image:
         defines |= {"LAST": 1} if number == len(subs) - 1 else {}
         in_front = {} if blended is None else {"in_front": blended}
         blended = recipe.image(f"blended {number % 2}")
-        recipe.draw("blend.frag", blended, defines=defines, sub_image=blurred, **in_front)
+        recipe.draw("blend.frag", blended, defines=defines, sub_image=blurred, images=in_front)
     frame.gpu.profile.count("pyramid sub-images", len(subs))
     assert blended is not None, "every picture has pixels, so one sub-image has weight"
     return blended
@@ -107,19 +107,23 @@ def _plan(frame: Frame, params: Params, sigma: float) -> list[SubImage]:
     subs = plan(front, back, sigma * frame.coc.at_infinity, blur_of, limit, params.matting)
     if not params.skip or frame.coc.scale == 0.0:
         return subs
-    found, depth = occupancy(frame), frame.coc.inverse_depth
-    needed = [sub for sub in subs if found.between(depth(sub.ramps[0] / sigma), depth(sub.ramps[3] / sigma))]
+    found = occupancy(frame)
+
+    def depth(blur: float) -> float:
+        return float(frame.coc.inverse_depth(blur / sigma))
+
+    needed = [sub for sub in subs if found.between(depth(sub.ramps[0]), depth(sub.ramps[3]))]
     frame.gpu.profile.count("pyramid sub-images skipped", len(subs) - len(needed))
     return needed
 
 
-def _matted(recipe: Recipe, sub: SubImage) -> Image:
+def _matted(recipe: Recipe, params: Params, sub: SubImage) -> Image:
     """One sub-image culled, filled and weighted (sections 3.1–3.3), colour times opacity."""
-    surfaces, profile, inspect = recipe.frame.pinhole(), recipe.gpu.profile, recipe.params.inspect
+    surfaces, profile, inspect = recipe.frame.pinhole(), recipe.gpu.profile, params.inspect
     images = {"pinhole": surfaces.color, "inverse_depth": surfaces.inverse_depth}
     culling = {"nearest": sub.cull, "soft": sub.soft}
     filled: dict[str, Image] = {}
-    if sub.fills or not recipe.params.skip:
+    if sub.fills or not params.skip:
         with profile.section("pyramid/fill"):
             pair = pull_push(
                 recipe.gpu, "pyramid/fill", recipe.frame.size, CULLED, textures=images, blocks=recipe.blocks,
@@ -129,9 +133,11 @@ def _matted(recipe: Recipe, sub: SubImage) -> Image:
     profile.count("pyramid fills" if filled else "pyramid fills skipped")
 
     def draw(into: Image, *, fill: bool, weigh: bool) -> None:
-        defines = {recipe.params.matting.name: 1, **({"FILL": 1} if fill else {}), **({} if weigh else {"WHOLE": 1})}
+        defines = {params.matting.name: 1, **({"FILL": 1} if fill else {}), **({} if weigh else {"WHOLE": 1})}
         values = {**culling, "ramps": sub.ramps}
-        recipe.draw("sub_image.frag", into, values=values, defines=defines, **images, **(filled if fill else {}))
+        recipe.draw(
+            "sub_image.frag", into, values=values, defines=defines, images={**images, **(filled if fill else {})}
+        )
 
     for name, fill, weigh in STEPS if inspect else ():
         draw(recipe.image(f"sub-image {sub.index:+d} {name}"), fill=fill and bool(filled), weigh=weigh)
@@ -140,8 +146,8 @@ def _matted(recipe: Recipe, sub: SubImage) -> Image:
     return matted
 
 
-def _blurred(recipe: Recipe, matted: Image, levels: int) -> Image:
+def _blurred(recipe: Recipe, analysis: Analysis, matted: Image, levels: int) -> Image:
     """The first level of `matted` blurred by `levels` reductions and expansions (section 3.4)."""
     with recipe.gpu.profile.section("pyramid/blur"):
         coarser = pyramid(recipe.gpu, "pyramid/level", recipe.frame.size, levels)
-        return blur(recipe.gpu, [matted, *coarser], recipe.params.analysis)
+        return blur(recipe.gpu, [matted, *coarser], analysis)

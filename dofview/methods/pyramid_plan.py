@@ -75,5 +75,7 @@ def plan(
             ramps[:2] = -FAR, -FAR
         # The paper culls at once, and fills nothing behind what it has not culled.
         soft = (0.0, 0.0) if paper else (ramps[1] - ramps[0], 0.5 * (anchor(index - 1) - anchor(index - 2)))
-        found.append(SubImage(index, ramps[0], tuple(ramps), front < ramps[0 if paper else 1], soft))
+        found.append(
+            SubImage(index, ramps[0], (ramps[0], ramps[1], ramps[2], ramps[3]), front < ramps[0 if paper else 1], soft)
+        )
     return found
