@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import ctypes
+import threading
 import time
 import warnings
 from pathlib import Path
@@ -47,12 +48,18 @@ def run(
     handle = window._window
     gpu = Gpu(window.ctx)
     _create_interface(handle)
-    app = App(gpu, scene, settings, wake=glfw.post_empty_event, spec=spec, store=store)
+    woken = threading.Event()
+
+    def wake() -> None:
+        woken.set()
+        glfw.post_empty_event()
+
+    app = App(gpu, scene, settings, wake=wake, spec=spec, store=store)
     if restore:
         restore_view(app)
     glfw.set_drop_callback(handle, lambda _, paths: [app.open_any(path) for path in paths])
     try:
-        _loop(window, app)
+        _loop(window, app, woken)
     finally:
         app.release()
         gpu.release()
@@ -90,11 +97,23 @@ def _create_interface(handle: object) -> None:
     if font.is_file():
         io.fonts.add_font_from_file_ttf(str(font), FONT_PX)
         imgui.get_style().font_size_base = FONT_PX
+    # imgui's callback, which follows, calls this one first.
+    glfw.set_key_callback(handle, _part_chords)
     imgui.backends.glfw_init_for_opengl(ctypes.cast(handle, ctypes.c_void_p).value or 0, True)
     imgui.backends.opengl3_init("#version 150")
 
 
-def _loop(window: Window, app: App) -> None:
+def _part_chords(_: object, key: int, scancode: int, action: int, mods: int) -> None:
+    """Let a frame end before a modifier goes up: a chord pressed and let go within one slow frame would lose it.
+
+    imgui ends a frame's input where one key would change twice; no keyboard has this one.
+    """
+    if action == glfw.RELEASE and glfw.KEY_LEFT_SHIFT <= key <= glfw.KEY_RIGHT_SUPER:
+        imgui.get_io().add_key_event(imgui.Key.f24, True)
+        imgui.get_io().add_key_event(imgui.Key.f24, False)
+
+
+def _loop(window: Window, app: App, woken: threading.Event) -> None:
     awake_until, frames_left = time.monotonic() + SETTLE_S, SETTLE_FRAMES
     while not window.is_closing and not app.quitting:
         if app.busy or frames_left > 0 or time.monotonic() < awake_until:
@@ -102,11 +121,18 @@ def _loop(window: Window, app: App) -> None:
         else:
             before = time.monotonic()
             glfw.wait_events_timeout(IDLE_WAIT_S)
-            if time.monotonic() - before >= IDLE_WAIT_S and not app.reload_shaders():
+            # An event may come in the very moment the wait ends: then imgui has it, and nobody would draw.
+            quiet = time.monotonic() - before >= IDLE_WAIT_S and not woken.is_set() and not _input_waits()
+            if quiet and not app.reload_shaders():
                 continue
+            woken.clear()
             awake_until, frames_left = time.monotonic() + SETTLE_S, SETTLE_FRAMES
         _draw(window, app)
         frames_left -= 1
+
+
+def _input_waits() -> bool:
+    return len(imgui.get_current_context().input_events_queue) > 0
 
 
 def _draw(window: Window, app: App) -> None:
