@@ -38,7 +38,7 @@ test: $(VENV)/screen
 	@$(BIN)/python -m pytest
 
 docs: $(VENV)/packages
-	@$(BIN)/python docs/parameters.py && $(BIN)/python docs/pictures.py && $(BIN)/python docs/comparisons.py
+	@$(BIN)/python docs/parameters.py && $(BIN)/python docs/actions.py && $(BIN)/python docs/pictures.py && $(BIN)/python docs/comparisons.py
 
 lint: $(VENV)/packages
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy

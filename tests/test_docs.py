@@ -43,6 +43,14 @@ def test_the_parameter_table_is_current(generator: ModuleType, name: str):
     assert generator.page(name, text) == text
 
 
+def test_the_tables_of_the_viewer_are_current():
+    """`make docs` writes them."""
+    actions = script("actions")
+    text = actions.PAGE.read_text(encoding="utf-8")
+    assert actions.page(text) == text
+    assert text.count("| View |") >= 3 and "Ctrl+Shift+P" in text and "dwell_s" in text
+
+
 @pytest.mark.parametrize("name", METHODS)
 def test_a_table_has_a_row_for_every_parameter(generator: ModuleType, name: str):
     for field, info in method(name).Params.model_fields.items():
