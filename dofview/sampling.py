@@ -37,14 +37,30 @@ def lens_samples(lens: Lens, count: int, *, progressive: bool, start: int = 0, s
     `lens.rotation_deg`. A Gaussian is not cut off; a picture reaches to ±1 and, turned, to √2.
     """
     _check(count, start, progressive)
-    if lens.distribution == Distribution.IMAGE:
-        square = _sobol_points((0, 1), count, start, seed) if progressive else _lattice(count, seed)
-        return _turn(load(lens.image).place(square), lens.rotation_deg)
     if progressive:
-        disc = concentric(_sobol_points((0, 1), count, start, seed))
-        return _warp(disc, lens)
+        return on_lens(lens, _sobol_points((0, 1), count, start, seed))
+    if lens.distribution == Distribution.IMAGE:
+        return on_lens(lens, _lattice(count, seed))
     points = _warp(spiral(count, seed), lens)
     return points - points.mean(axis=0) if lens.distribution == Distribution.GAUSSIAN else points
+
+
+def on_lens(lens: Lens, square: np.ndarray) -> np.ndarray:
+    """Carry points of the unit square to the lens, so that even ones follow its distribution, (n, 2) to (n, 2)."""
+    if lens.distribution == Distribution.IMAGE:
+        return _turn(load(lens.image).place(square), lens.rotation_deg)
+    return _warp(concentric(square), lens)
+
+
+def halton(count: int) -> np.ndarray:
+    """The first `count` points of the Halton sequence in bases 2 and 3, in the open unit square, (count, 2)."""
+    points = np.zeros((count, 2))
+    for column, base in enumerate((2, 3)):
+        left, digit = np.arange(1, count + 1), 1.0 / base
+        while left.any():
+            points[:, column] += left % base * digit
+            left, digit = left // base, digit / base
+    return points
 
 
 def pixel_jitter(count: int, *, progressive: bool, start: int = 0, seed: int = 0) -> np.ndarray:

@@ -13,7 +13,7 @@ from dofview.gl.context import Gpu
 from dofview.lens import Lens
 from dofview.methods import multiview
 from dofview.methods.method import Recipe
-from dofview.methods.multiview_layers import build, fit
+from dofview.methods.multiview_layers import Kind, Layering, build, fit
 from dofview.pipeline import Pipeline
 from dofview.scene.camera import Camera
 from dofview.settings import ImageSettings, Settings
@@ -34,22 +34,22 @@ def planes(gpu: Gpu) -> Iterator[Pipeline]:
 def layers_of(pipeline: Pipeline, layering: str, count: int = 6, overlap: float = 0.1):
     frame = pipeline.frame(SETTINGS, guard=True)
     recipe = Recipe(frame, "multiview", multiview.Params())
-    return frame, build(recipe, fit(frame, count, overlap), layering)
+    return frame, build(recipe, Kind(fit(frame, count, overlap), Layering(layering), 1, False, False))
 
 
 def test_one_pass_fills_the_layers_as_one_pass_each_does(planes: Pipeline):
     _, exact = layers_of(planes, "exact")
-    color, depth = exact.color.pixels(), exact.inverse_depth.pixels()
+    color, depth = exact.images["layer_color"].pixels(), exact.images["layer_inverse_depth"].pixels()
     _, passes = layers_of(planes, "passes")
     # The two programs may round differently; which pixels are filled is what the method lives on.
-    assert np.mean((passes.inverse_depth.pixels() > 0.0) != (depth > 0.0)) <= 1e-5
-    assert np.mean(np.abs(passes.inverse_depth.pixels() - depth) > 1e-6) <= 1e-5
-    assert np.mean(np.abs(passes.color.pixels() - color) > 1e-3) <= 1e-5
+    assert np.mean((passes.images["layer_inverse_depth"].pixels() > 0.0) != (depth > 0.0)) <= 1e-5
+    assert np.mean(np.abs(passes.images["layer_inverse_depth"].pixels() - depth) > 1e-6) <= 1e-5
+    assert np.mean(np.abs(passes.images["layer_color"].pixels() - color) > 1e-3) <= 1e-5
 
 
 def test_a_layer_holds_its_slab_and_the_overlap_only(planes: Pipeline):
     _, layers = layers_of(planes, "exact", overlap=0.25)
-    slabs, depth = layers.slabs, layers.inverse_depth.pixels()
+    slabs, depth = layers.slabs, layers.images["layer_inverse_depth"].pixels()
     filled = 0
     for k in range(slabs.count):
         found = depth[k][depth[k] > 0.0]

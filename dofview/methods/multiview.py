@@ -6,23 +6,37 @@ on Graphics 28(5), SIGGRAPH Asia 2009.
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 
 import numpy as np
-from pydantic import Field
+from pydantic import BaseModel, ConfigDict, Field
 
 from dofview.gl.targets import Image
+from dofview.lens import focal_px
 from dofview.methods.method import Params as BaseParams
 from dofview.methods.method import Recipe
-from dofview.methods.multiview_layers import MOST_LAYERS, Layers, build, count_for_growth, fit
+from dofview.methods.multiview_culling import Culling, Mask, mask
+from dofview.methods.multiview_layers import (
+    MOST_LAYERS,
+    Kind,
+    Layering,
+    Layers,
+    affordable,
+    build,
+    count_for_growth,
+    detail_shift,
+    fit,
+)  # fmt: skip
 from dofview.render.frame import Frame
-from dofview.sampling import lens_samples
+from dofview.sampling import halton, lens_samples, on_lens
 
 TITLE = "Multiview synthesis"
 CITATION = "S. Lee, E. Eisemann, H.-P. Seidel. Depth-of-Field Rendering with Multiview Synthesis. ACM TOG 28(5), 2009."
 REQUIRES_GL = 330
 GUARD_BAND = True
-TILE = 8
+NOISE_SIZE = 64
+Vec3 = tuple[float, float, float]
 
 
 class Spacing(StrEnum):
@@ -32,18 +46,22 @@ class Spacing(StrEnum):
     GROWTH = "growth"
 
 
-class Layering(StrEnum):
-    """How the scene gets into the layers."""
+class Jitter(StrEnum):
+    """How the lens samples differ from pixel to pixel."""
 
-    EXACT = "exact"
-    PASSES = "passes"
-
-
-class Culling(StrEnum):
-    """How layers that a pixel's rays cannot meet are found."""
-
-    TILES = "tiles"
     OFF = "off"
+    NOISE = "noise"
+    HALTON = "halton"
+
+
+class Show(StrEnum):
+    """What is shown: the picture, or what it is made from."""
+
+    PICTURE = "picture"
+    COLOR = "color"
+    COVERAGE = "coverage"
+    LAYERS = "layers"
+    PROBES = "probes"
 
 
 class Params(BaseParams):
@@ -54,7 +72,7 @@ class Params(BaseParams):
     )  # fmt: skip
     spacing: Spacing = Field(default=Spacing.BUDGET, description="Layers by number, or by how much blur each spans.")
     layers: int = Field(
-        default=16, ge=1, le=MOST_LAYERS - 1,
+        default=16, ge=1, le=MOST_LAYERS - 1, json_schema_extra={"symbol": "M"},
         description="Layers over the depths in view; hidden surfaces behind them get one more.",
     )  # fmt: skip
     growth: float = Field(
@@ -62,49 +80,120 @@ class Params(BaseParams):
         description="CoC growth of a layer when they are spaced by it; more where 31 layers are not enough.",
     )  # fmt: skip
     overlap: float = Field(default=0.1, ge=0.0, le=0.5, description="How far layers reach into each other, in layers.")
-    layering: Layering = Field(default=Layering.EXACT, description="How the scene is put into the layers.")
+    layering: Layering = Field(
+        default=Layering.EXACT, description="Each triangle in all its layers, or the paper's one, or a pass per layer."
+    )
+    detail: int = Field(default=1, ge=1, le=3, description="Texels of a layer along each side of a pixel.")
+    memory: int = Field(
+        default=3072, ge=16, le=65536, json_schema_extra={"unit": "MiB"},
+        description="What the layers may take; beyond it they get less detail, then fewer.",
+    )  # fmt: skip
     probes: int = Field(default=3, ge=1, le=5, description="Depths looked at to find where a ray meets a layer.")
+    cones: bool = Field(default=True, description="Widen rays to cones that meet with the ones beside them.")
+    cone_width: float = Field(
+        default=1.0, ge=0.0, le=4.0, json_schema_extra={"symbol": "λ√N"},
+        description="Width of a cone times the square root of the rays, in CoC radii; the paper's is 0.775.",
+    )  # fmt: skip
+    jitter: Jitter = Field(default=Jitter.OFF, description="Lens samples that differ from pixel to pixel.")
+    view_dependent: bool = Field(
+        default=False, description="Light surfaces for the point of the lens that sees them, not for its centre."
+    )
     culling: Culling = Field(default=Culling.TILES, description="How layers without anything in reach are left out.")
+    show: Show = Field(default=Show.PICTURE, description="The picture, one layer, layers walked, or probes per ray.")
+    shown_layer: int = Field(default=0, ge=0, le=MOST_LAYERS - 1, description="The layer that is shown.")
+
+
+class ViewBlock(BaseModel):
+    """Directions to pixels and offsets of lens points in local space: `corner` + x `right` + y `up` reaches depth 1."""
+
+    model_config = ConfigDict(frozen=True)
+
+    corner: Vec3
+    right: Vec3
+    up: Vec3
+    lens_right: Vec3
+    lens_up: Vec3
 
 
 def render(frame: Frame, params: Params) -> Image:
     """Draw the layers, find which of them each pixel can see, trace."""
     recipe = Recipe(frame, "multiview", params)
     count = params.layers if params.spacing is Spacing.BUDGET else count_for_growth(frame, params.growth)
-    layers = build(recipe, fit(frame, count, params.overlap), params.layering)
-    points = lens_points(recipe, params)
-    mask, shift = tile_mask(recipe, layers, params, points)
+    kind = Kind(fit(frame, count, params.overlap), params.layering, params.detail, params.view_dependent, params.cones)
+    kind = affordable(frame, kind, params.memory * 2.0**20)
+    layers, detail = build(recipe, kind), kind.detail
+    points = lens_points(frame, params)
+    # Noise moves a sample within the square that is its share of the disc.
+    width = math.sqrt(math.pi / params.samples) if params.jitter is Jitter.NOISE else 0.0
+    # A trilinear fetch of texels as wide as the cone reads three of them across, at two levels.
+    footprint = 3.0 * params.cone_width / math.sqrt(params.samples) if params.cones else 0.0
+    reach = mask(recipe, params.culling, layers, detail, float(np.abs(points).max()) + width / 2, footprint)
     result = recipe.image("result")
-    recipe.draw(
-        "trace.frag", result, blocks={"Slabs": layers.slabs}, layer_color=layers.color,
-        layer_inverse_depth=layers.inverse_depth, mask=mask, lens_points=points,
-        values={"background": frame.background, "mask_shift": shift, "guard": frame.guard},
-    )  # fmt: skip
+    grid = {"detail": float(detail), "detail_shift": detail_shift(detail), "mask_shift": reach.shift}
+    if params.show in (Show.PICTURE, Show.PROBES):
+        _trace(recipe, params, layers, reach, result, {**grid, "noise_width": width})
+    else:
+        recipe.draw(
+            "show.frag", result, blocks={"Slabs": layers.slabs}, values=grid, mask=reach.image,
+            layer_color=layers.images["layer_color"],
+        )  # fmt: skip
     return result
 
 
-def lens_points(recipe: Recipe, params: Params) -> Image:
+def lens_points(frame: Frame, params: Params) -> np.ndarray:
+    """Lens samples, (n, 2) in lens radii: one per ray, or twice as many for the Halton jitter, where each pixel takes
+    its rays from another place."""
+    key = _points_key(frame, params)
+    if key not in frame.cache.values:
+        if params.jitter is Jitter.HALTON:
+            frame.cache.values[key] = on_lens(frame.lens, halton(2 * params.samples))
+        else:
+            frame.cache.values[key] = lens_samples(frame.lens, params.samples, progressive=False)
+    return frame.cache.values[key]  # type: ignore[return-value]
+
+
+def _points_key(frame: Frame, params: Params) -> tuple:
+    return "multiview/lens points", frame.lens, params.samples, params.jitter is Jitter.HALTON
+
+
+def _trace(
+    recipe: Recipe, params: Params, layers: Layers, reach: Mask, into: Image, values: dict[str, object]
+) -> None:  # fmt: skip
+    frame = recipe.frame
+    blocks: dict[str, BaseModel] = {"Slabs": layers.slabs}
+    textures = {**layers.images, "mask": reach.image, "noise": _noise(recipe), "lens_points": _points(recipe, params)}
+    if layers.defines:
+        blocks |= {"View": _view(frame), "Lights": frame.lights.block}
+        textures |= frame.lights.textures
+    # What decides on code is compiled in: a software rasteriser runs both sides of every branch.
+    options = {"PROBES": params.probes, "CONES": params.cones, "JITTER": list(Jitter).index(params.jitter)}
+    recipe.draw(
+        "trace.frag", into, blocks=blocks, defines={**options, **layers.defines, **frame.lights.defines}, **textures,
+        values={**values, "background": frame.background, "guard": frame.guard},
+    )  # fmt: skip
+
+
+def _points(recipe: Recipe, params: Params) -> Image:
     """The lens samples as a row of texels."""
-    points = recipe.image("lens points", (params.samples, 1), components=2)
-    if not recipe.frame.cache.holds((recipe.frame.lens, params.samples), points):
-        points.write(lens_samples(recipe.frame.lens, params.samples, progressive=False).astype(np.float32)[None])
-    return points
+    points = lens_points(recipe.frame, params)
+    image = recipe.image("lens points", (len(points), 1), components=2)
+    if not recipe.frame.cache.holds(_points_key(recipe.frame, params), image):
+        image.write(points[None])
+    return image
 
 
-def tile_mask(recipe: Recipe, layers: Layers, params: Params, points: Image) -> tuple[Image, int]:
-    """Per tile of 8 by 8 pixels, one bit for every layer that holds something within reach of the tile's rays."""
-    if params.culling is Culling.OFF:
-        mask = recipe.image("mask", (1, 1), components=1, dtype="u4")
-        mask.write(np.full((1, 1, 1), (1 << layers.slabs.count) - 1, np.uint32))
-        return mask, 31
-    width, height = recipe.frame.size
-    size = (-(-width // TILE), -(-height // TILE))
-    held, across, spread = (recipe.image(name, size, 1, "u4") for name in ("tiles", "tiles across", "mask"))
-    recipe.draw("tiles.frag", held, defines={"TILE": TILE}, occupied=layers.occupied)
-    extent = float(np.abs(lens_samples(recipe.frame.lens, params.samples, progressive=False)).max())
-    for source, into, axis in ((held, across, (1, 0)), (across, spread, (0, 1))):
-        recipe.draw(
-            "spread.frag", into, blocks={"Slabs": layers.slabs}, defines={"TILE": TILE}, tiles=source,
-            values={"axis": axis, "lens_extent": extent, "footprint": 0.0},
-        )  # fmt: skip
-    return spread, 3
+def _noise(recipe: Recipe) -> Image:
+    """Four independent values in [0, 1) per texel, the same on every run."""
+    image = recipe.image("noise", (NOISE_SIZE, NOISE_SIZE))
+    if not recipe.frame.cache.holds("noise", image):
+        image.write(np.random.default_rng(2009).random((NOISE_SIZE, NOISE_SIZE, 4), np.float32))
+    return image
+
+
+def _view(frame: Frame) -> ViewBlock:
+    right, up, backward = frame.camera.axes()
+    focal = focal_px(frame.inner_size[1], frame.camera.vfov_deg)
+    width, height = frame.size
+    corner = -backward - right * (width / 2 / focal) - up * (height / 2 / focal)
+    vectors = (corner, right / focal, up / focal, right * frame.lens.radius, up * frame.lens.radius)
+    return ViewBlock(**dict(zip(ViewBlock.model_fields, (tuple(v.tolist()) for v in vectors), strict=True)))

@@ -7,8 +7,11 @@ aperture draws no triangle.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from enum import StrEnum
 from typing import NamedTuple
 
+import moderngl
 from pydantic import BaseModel, ConfigDict
 
 from dofview.gl.layered import DepthArray
@@ -16,13 +19,23 @@ from dofview.gl.passes import draw
 from dofview.gl.targets import Image
 from dofview.methods.method import Recipe
 from dofview.render.frame import Frame
-from dofview.render.raster import depth_range, draw_scene
+from dofview.render.raster import Projection, depth_range, draw_scene, projection
 
 MOST_LAYERS = 32
 """One bit each in the masks."""
 
 # A geometry shader may write 1024 floats; a vertex of the scene has 20 of them with its position and layer.
 PER_INVOCATION = 17
+MOST_MIP_LEVEL = 7
+LEAST_BLUR_PX = 1.0 / 16.0
+
+
+class Layering(StrEnum):
+    """How the scene is put into the layers."""
+
+    EXACT = "exact"
+    PAPER = "paper"
+    PASSES = "passes"
 
 
 class Slabs(BaseModel):
@@ -37,13 +50,41 @@ class Slabs(BaseModel):
     count: int
 
 
-class Layers(NamedTuple):
-    """Arrays of the canvas size: colour with coverage in alpha, inverse depth (0: empty); and one bit per layer."""
+class Kind(NamedTuple):
+    """What is put into the layers, and how; `exact` colours are kept in 32 bits instead of 16."""
 
     slabs: Slabs
-    color: Image
-    inverse_depth: Image
+    layering: Layering
+    detail: int
+    surfaces: bool
+    mipmaps: bool
+    exact: bool = False
+
+    def formats(self) -> dict[str, tuple[int, str]]:
+        """Components and type of each array by sampler name, in the order of scene.frag's outputs."""
+        formats = {"layer_color": (4, "f4" if self.exact else "f2"), "layer_inverse_depth": (1, "f4")}
+        if self.surfaces:
+            # Normals decide where a polished surface reflects, so they are kept in full.
+            formats |= {"layer_normal": (4, "f4"), "layer_emissive": (4, "f2"), "layer_occlusion": (1, "f1")}
+        return formats
+
+    def texel_bytes(self) -> float:
+        """Bytes per texel of a layer, mip levels and depth buffer included."""
+        held = sum(components * int(dtype[1]) for components, dtype in self.formats().values())
+        return (held * 4.0 / 3.0 if self.mipmaps else held) + 4.0
+
+
+class Layers(NamedTuple):
+    """Arrays of `detail` times the canvas size by sampler name: layer_color with coverage in alpha, layer_inverse_depth
+    (0: empty), and the properties of surfaces where asked for; and an image with one bit per layer."""
+
+    slabs: Slabs
+    images: Mapping[str, Image]
     occupied: Image
+
+    @property
+    def defines(self) -> dict[str, int]:
+        return {"SURFACES": 1} if "layer_normal" in self.images else {}
 
 
 def fit(frame: Frame, count: int, overlap: float) -> Slabs:
@@ -71,55 +112,121 @@ def count_for_growth(frame: Frame, growth_px: float) -> int:
     return min(max(math.ceil(growth / growth_px), 1), MOST_LAYERS - 1)
 
 
-def build(recipe: Recipe, slabs: Slabs, way: str) -> Layers:
-    """Draw the scene into the layers of `slabs`, unless they are there from the last frame.
+def affordable(frame: Frame, kind: Kind, most_bytes: float) -> Kind:
+    """Take detail, then layers away while `kind` needs more than `most_bytes`; and detail where nothing is blurred.
 
-    `way` is "exact": once, each triangle sent to every layer it overlaps, fragments outside left out; "passes": once
-    per layer, for drivers without layered rendering.
+    With everything in focus finer layers have nothing to add, and the picture is the pinhole's to the last bit.
     """
-    frame, gpu = recipe.frame, recipe.gpu
-    count = max(slabs.count, 1)
-    images = recipe.image("layers", layers=count), recipe.image("layers inverse depth", components=1, layers=count)
+    view = frame.depth_range()
+    widest = max(abs(float(frame.coc.radius_px(depth))) for depth in (view.nearest, view.farthest_surface))
+    if widest < LEAST_BLUR_PX:
+        kind = kind._replace(detail=1, exact=True)
+    layer_bytes = frame.size[0] * frame.size[1] * kind.texel_bytes()
+    detail = min(kind.detail, int(math.sqrt(most_bytes / (layer_bytes * max(kind.slabs.count, 1)))))
+    kind = kind._replace(detail=max(min(detail, frame.gpu.max_size // max(frame.size)), 1))
+    most = max(int(most_bytes / layer_bytes) - 1, 1)
+    return kind if kind.slabs.count <= most + 1 else kind._replace(slabs=fit(frame, most, kind.slabs.overlap))
+
+
+def build(recipe: Recipe, kind: Kind) -> Layers:
+    """Draw the scene into layers as `kind` says, unless they are there from an earlier frame."""
+    frame, slabs = recipe.frame, kind.slabs
+    if not _can_layer(frame, slabs.count):
+        kind = kind._replace(layering=Layering.PASSES)
+    images = _images(recipe, kind, "")
     occupied = recipe.image("occupied layers", components=1, dtype="u4")
-    way = way if _can_layer(frame, count) else "passes"
-    key = (frame.geometry_key, slabs, way)
-    kept = [frame.cache.holds(key, image) for image in (*images, occupied)]
+    kept = [frame.cache.holds((frame.geometry_key, kind), image) for image in (*images.values(), occupied)]
     if not all(kept):
         if slabs.count:
-            with gpu.profile.section("multiview/layers"):
-                {"exact": _draw_exact, "passes": _draw_passes}[way](recipe, slabs, images)
-        recipe.draw("occupied.frag", occupied, blocks={"Slabs": slabs}, layer_inverse_depth=images[1])
-    return Layers(slabs, *images, occupied)
+            with recipe.gpu.profile.section("multiview/layers"):
+                _DRAW[kind.layering](recipe, kind, images)
+                if kind.mipmaps:
+                    for name in images.keys() - {"layer_inverse_depth"}:
+                        images[name].texture.build_mipmaps(0, MOST_MIP_LEVEL)
+                        images[name].texture.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
+        source = {"layer_inverse_depth": images["layer_inverse_depth"]}
+        recipe.draw("occupied.frag", occupied, blocks={"Slabs": slabs}, defines={"DETAIL": kind.detail}, **source)
+    return Layers(slabs, images, occupied)
 
 
-def _draw_exact(recipe: Recipe, slabs: Slabs, images: tuple[Image, Image]) -> None:
-    frame, gpu = recipe.frame, recipe.gpu
-    # Two sizes only, so that one layer more or less while the camera moves compiles nothing.
-    most = PER_INVOCATION // 2 + 1 if slabs.count <= PER_INVOCATION // 2 + 1 else PER_INVOCATION
-    draw_scene(
-        gpu, frame.scene, frame.projection(), images, lights=frame.lights, framebuffer=_layered(recipe, images),
-        geometry="methods/multiview/layers.geom", reject="methods/multiview/reject_slab.glsl", blocks={"Slabs": slabs},
-        defines={"INVOCATIONS": -(-slabs.count // most), "MOST_LAYERS": most, "MOST_VERTICES": 3 * most},
-    )  # fmt: skip
+def detail_shift(detail: int) -> float:
+    """Pixels by which the layers' finer grid is moved so that one in `detail` of its points is a pixel's centre."""
+    return (detail - 1) / (2.0 * detail)
 
 
-def _draw_passes(recipe: Recipe, slabs: Slabs, images: tuple[Image, Image]) -> None:
-    frame, gpu = recipe.frame, recipe.gpu
-    one = recipe.image("one layer"), recipe.image("one layer inverse depth", components=1)
-    for k in range(slabs.count):
-        draw_scene(
-            gpu, frame.scene, frame.projection(), one, lights=frame.lights, values={"slab": k},
-            reject="methods/multiview/reject_slab.glsl", blocks={"Slabs": slabs}, defines={"ONE_LAYER": 1},
+def _images(recipe: Recipe, kind: Kind, prefix: str, layers: int | None = None) -> dict[str, Image]:
+    """The arrays of `kind` (or plain images, for `layers` 0) by sampler name."""
+    size, layers = _size(recipe.frame, kind), max(kind.slabs.count, 1) if layers is None else layers
+    return {
+        name: recipe.image(prefix + name.replace("_", " "), size, components, dtype, kind.mipmaps, layers)
+        for name, (components, dtype) in kind.formats().items()
+    }
+
+
+def _draw_exact(recipe: Recipe, kind: Kind, images: dict[str, Image]) -> None:
+    """Once, each triangle sent to every layer it overlaps; fragments outside are left out."""
+    _draw_once(recipe, kind, images, {"HAS_REJECT": 1, "REJECT": "methods/multiview/reject_slab.glsl"})
+
+
+def _draw_paper(recipe: Recipe, kind: Kind, images: dict[str, Image]) -> None:
+    """Once, each triangle in the layer of its farthest corner alone; then every texel is moved to where it belongs."""
+    raw = _images(recipe, kind._replace(mipmaps=False), "raw ")
+    _draw_once(recipe, kind, raw, {"FARTHEST": 1})
+    for k in range(kind.slabs.count):
+        draw(
+            recipe.gpu, "methods/multiview/settle.frag", tuple(images.values()), textures=raw, values={"layer": k},
+            blocks={"Slabs": kind.slabs}, geometry="pass/to_layer.geom",
+            defines={"SURFACES": 1} if kind.surfaces else {},
         )  # fmt: skip
-        for image, layer in zip(one, images, strict=True):
+
+
+def _draw_passes(recipe: Recipe, kind: Kind, images: dict[str, Image]) -> None:
+    """Once per layer, for drivers that cannot write layers with a depth each."""
+    one = _images(recipe, kind._replace(mipmaps=False), "one ", layers=0)
+    for k in range(kind.slabs.count):
+        draw_scene(
+            recipe.gpu, recipe.frame.scene, _projection(recipe.frame, kind), tuple(one.values()),
+            reject="methods/multiview/reject_slab.glsl", blocks={"Slabs": kind.slabs}, values={"slab": k},
+            **_drawing(recipe, kind, {"ONE_LAYER": 1}),
+        )  # fmt: skip
+        for name, image in one.items():
             draw(
-                gpu, "pass/copy.frag", layer, textures={"source": image}, geometry="pass/to_layer.geom",
-                values={"layer": k},
+                recipe.gpu, "pass/copy.frag", images[name], textures={"source": image}, values={"layer": k},
+                geometry="pass/to_layer.geom",
             )  # fmt: skip
 
 
-def _layered(recipe: Recipe, images: tuple[Image, Image]):
-    return recipe.gpu.targets.framebuffer(images, depth=True)
+_DRAW = {Layering.EXACT: _draw_exact, Layering.PAPER: _draw_paper, Layering.PASSES: _draw_passes}
+
+
+def _draw_once(recipe: Recipe, kind: Kind, images: dict[str, Image], defines: dict[str, object]) -> None:
+    # Two sizes only, so that one layer more or less while the camera moves compiles nothing.
+    half = PER_INVOCATION // 2 + 1
+    most = half if kind.slabs.count <= half else PER_INVOCATION
+    into = tuple(images.values())
+    defines = {
+        **defines, "INVOCATIONS": -(-kind.slabs.count // most), "MOST_LAYERS": most, "MOST_VERTICES": 3 * most,
+    }  # fmt: skip
+    draw_scene(
+        recipe.gpu, recipe.frame.scene, _projection(recipe.frame, kind), into, blocks={"Slabs": kind.slabs},
+        framebuffer=recipe.gpu.targets.framebuffer(into, depth=True), geometry="methods/multiview/layers.geom",
+        **_drawing(recipe, kind, defines),
+    )  # fmt: skip
+
+
+def _drawing(recipe: Recipe, kind: Kind, defines: dict[str, object]) -> dict:
+    """What every way of drawing hands to the scene; textures are as sharp on a finer grid as on the pixels'."""
+    surfaces = {"SURFACES": 1} if kind.surfaces else {}
+    return {"lights": recipe.frame.lights, "lod_bias": math.log2(kind.detail), "defines": {**defines, **surfaces}}
+
+
+def _projection(frame: Frame, kind: Kind) -> Projection:
+    shift = detail_shift(kind.detail)
+    return projection(frame.scene, frame.camera, frame.inner_size, frame.guard, jitter_px=(shift, shift))
+
+
+def _size(frame: Frame, kind: Kind) -> tuple[int, int]:
+    return frame.size[0] * kind.detail, frame.size[1] * kind.detail
 
 
 def _can_layer(frame: Frame, count: int) -> bool:

@@ -126,6 +126,9 @@ def studio(height: int = HEIGHT) -> np.ndarray:
         for row in range(2):
             left, low = 130 + 17 * column, 5 + 22 * row
             panel((left, left + 14), (low, low + 18), (2.6, 3.0, 3.6))
+    for column in range(5):
+        for row in range(4):
+            panel((-20 + 11 * column, -14 + 11 * column), (6 + 9 * row, 12 + 9 * row), (3.4, 3.2, 2.9))
     for stripe in range(-180, 180, 20):
         panel((stripe, stripe + 10), (-12, -4), (0.5, 0.32, 0.2))
     panel((-150, -110), (-30, 35), (1.6, 1.3, 0.9))

@@ -2,6 +2,7 @@
 // the camera, and a soft sky. The lights follow the lens centre, not the lens sample, so all views see the same light.
 // Where there is an environment it takes the place of the sky, and the lights are dark.
 #include <Lights>
+#include "include/surface_point.glsl"
 #ifdef ENVIRONMENT_LEVELS
 #include "include/equirect.glsl"
 uniform sampler2D environment_map;

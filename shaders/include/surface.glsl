@@ -1,5 +1,6 @@
 // What a material says of the point being drawn (glTF 2.0 section 3.9): textures and factors, before any light.
 #include <Material>
+#include "include/surface_point.glsl"
 
 #ifdef BASE_COLOR_MAP
 uniform sampler2D base_color_map;
@@ -18,17 +19,6 @@ uniform sampler2D emissive_map;
 #endif
 
 uniform float lod_bias;
-
-struct Surface
-{
-    vec3 base_color;
-    float alpha;
-    vec3 normal;
-    float metallic;
-    float roughness;
-    float occlusion;
-    vec3 emissive;
-};
 
 vec2 map_uv(vec4 row0, vec4 row1)
 {

@@ -2,7 +2,8 @@
 //
 // A pass that wants other than the nearest surface names a file in the define REJECT, which declares
 //     bool reject(float inverse_depth, ivec2 pixel)
-// and says which fragments to leave out.
+// and says which fragments to leave out. One that wants surfaces instead of light, to shade them later, defines SURFACES:
+// the colour is then the base colour, and normal, roughness, emission, metalness and occlusion follow the depth.
 in Vertex
 {
     vec3 position;
@@ -12,7 +13,7 @@ in Vertex
 } vertex;
 
 #include "include/surface.glsl"
-#ifndef UNLIT
+#if !defined(UNLIT) && !defined(SURFACES)
 #include "include/shading.glsl"
 #endif
 #include <REJECT>
@@ -21,9 +22,19 @@ uniform vec3 eye;  // lens centre or lens sample, local space
 
 layout(location = 0) out vec4 color;
 layout(location = 1) out float inverse_depth;
+#ifdef SURFACES
+layout(location = 2) out vec4 normal_roughness;
+layout(location = 3) out vec4 emissive_metallic;
+layout(location = 4) out float occlusion;
+#endif
 
 // Far above any display, far below what fp16 or a sum of 4096 views can hold; NaN becomes 0.
 const float BRIGHTEST = 1e4;
+
+vec4 light(vec3 radiance)
+{
+    return vec4(mix(vec3(0.0), min(radiance, BRIGHTEST), greaterThan(radiance, vec3(0.0))), 1.0);
+}
 
 void main()
 {
@@ -36,10 +47,20 @@ void main()
 #ifdef ALPHA_TEST
     if (surface.alpha < material.alpha_cutoff) discard;
 #endif
-#ifdef UNLIT
-    vec3 radiance = surface.base_color;
+#if defined(SURFACES) && defined(UNLIT)
+    // Without a normal and with everything occluded, shading leaves the emission alone.
+    color = vec4(0.0, 0.0, 0.0, 1.0);
+    normal_roughness = vec4(0.0, 0.0, 0.0, 1.0);
+    emissive_metallic = vec4(light(surface.base_color).rgb, 0.0);
+    occlusion = 0.0;
+#elif defined(SURFACES)
+    color = light(surface.base_color);
+    normal_roughness = vec4(surface.normal, surface.roughness);
+    emissive_metallic = vec4(light(surface.emissive).rgb, surface.metallic);
+    occlusion = surface.occlusion;
+#elif defined(UNLIT)
+    color = light(surface.base_color);
 #else
-    vec3 radiance = shade(surface, normalize(eye - vertex.position));
+    color = light(shade(surface, normalize(eye - vertex.position)));
 #endif
-    color = vec4(mix(vec3(0.0), min(radiance, BRIGHTEST), greaterThan(radiance, vec3(0.0))), 1.0);
 }

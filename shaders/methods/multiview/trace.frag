@@ -1,12 +1,16 @@
 // The picture: for each pixel, rays through points of the lens, each stopped by the first surface it meets in the layers
-// (Lee 2009 section 4.3). Rays that leave the canvas without having met anything are left out of the mean.
+// (Lee 2009 section 4.3), or spread to a cone that layers stop in part (section 4.4). Rays that leave the canvas without
+// having met anything are left out of the mean.
 //
 // Cost per ray: one mask walk, one to three probes in each of the two or three layers that the mask leaves, one colour.
 #include "methods/multiview/ray.glsl"
+#include "methods/multiview/seen.glsl"
+#include "methods/multiview/heat.glsl"
 
-uniform sampler2DArray layer_color;
 uniform usampler2D mask;
 uniform sampler2D lens_points;
+uniform sampler2D noise;
+uniform float noise_width;  // how far it moves a lens sample in all, lens radii
 uniform vec3 background;
 uniform int mask_shift;
 uniform int guard;
@@ -19,37 +23,84 @@ int lowest_bit(uint bits)
     return findLSB(bits);
 #else
     int k = 0;
-    while ((bits >> k & 1u) == 0u) ++k;
+    while ((bits >> k & 1u) == 0u && k < 31) ++k;
     return k;
 #endif
 }
 
-// Colour that the ray meets, and 1; 0 when it left the canvas.
-vec4 ray(vec2 pixel, vec2 lens_point, uint layers)
+// Mip level whose texels are as wide as the cone where the circle of confusion is `c`.
+float cone_level(float c)
 {
-    for (uint left = layers; left != 0u; left &= left - 1u) {
-        int k = lowest_bit(left);
-        vec2 a = pixel - lens_point * coc_radius(slab_front(k)), b = pixel - lens_point * coc_radius(slab_back(k));
-        ivec2 texel;
-        float t;
-        if (intersect(k, a, b, texel, t)) return vec4(texelFetch(layer_color, ivec3(texel, k), 0).rgb, 1.0);
-    }
-    vec2 end = pixel - lens_point * coc_radius(slabs.farthest);
-    vec2 size = vec2(textureSize(layer_color, 0).xy);
-    bool inside = all(greaterThanEqual(end, vec2(0.0))) && all(lessThan(end, size));
-    return inside ? vec4(background, 1.0) : vec4(0.0);
+    return log2(max(params.cone_width * inversesqrt(float(params.samples)) * abs(c) * detail, 1.0));
+}
+
+// What the ray meets, premultiplied by how much of it is stopped, by surfaces or by the background inside the canvas.
+vec4 ray(vec2 start, vec2 lens_point, uint layers)
+{
+    vec4 met = vec4(0.0);
+    uint left = layers;
+    float depth = 0.0;
+    vec3 at = vec3(start, 0.0);
+    bool hit = false, more = layers != 0u;
+    do {
+        int k = max(lowest_bit(left), 0);
+        float front = slab_front(k), back = slab_back(k), t;
+        vec2 a = ray_at(start, lens_point, front), b = ray_at(start, lens_point, back);
+        bool found = intersect(k, front, back, a, b, t);
+        vec2 q = mix(a, b, t);
+        float inverse_depth = mix(front, back, t);
+#if CONES
+        // Around a ray that passes by, part of its cone may still be stopped. Layers share one surface more often than
+        // they hide each other, so what they cover adds up.
+        vec4 part = seen(q, k, cone_level(coc_radius(inverse_depth)), inverse_depth, lens_point);
+        if (more && part.a > 0.0 && on_canvas(q)) met += part * min(1.0, (1.0 - met.a) / part.a);
+        found = met.a > 0.996;
+#endif
+        if (more) {
+            hit = found;
+            at = vec3(q, k);
+            depth = inverse_depth;
+            left &= left - 1u;
+            more = left != 0u && !hit;
+        }
+    } while (more);
+#if CONES
+    if (hit) return met / met.a;
+#else
+    if (hit) return vec4(seen(at.xy, int(at.z), -1.0, depth, lens_point).rgb, 1.0);
+#endif
+    return on_canvas(ray_at(start, lens_point, slabs.farthest)) ? met + (1.0 - met.a) * vec4(background, 1.0) : met;
+}
+
+// Lens sample `i` of a pixel with `random`. Noise: each of the 16 pairs of its channels moves a sixteenth of the samples,
+// by up to half their distance. Halton: the pixel's samples are a part of twice as many, from another place for each pixel
+// (Lee 2009 section 4.5).
+vec2 lens_sample(int i, vec4 random)
+{
+#if JITTER == JITTER_HALTON
+    i = (i + int(random.x * float(2 * params.samples))) % (2 * params.samples);
+#endif
+    vec2 point = texelFetch(lens_points, ivec2(i, 0), 0).xy;
+#if JITTER == JITTER_NOISE
+    point += noise_width * (vec2(random[i & 3], random[i >> 2 & 3]) - 0.5);
+#endif
+    return point;
 }
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_FragCoord.xy), size = textureSize(layer_color, 0).xy;
+    ivec2 pixel = ivec2(gl_FragCoord.xy), size = textureSize(layer_color, 0).xy / int(detail);
     color = vec4(background, 1.0);
     // Nobody looks at the guard band of the result.
     if (any(lessThan(pixel, ivec2(guard))) || any(greaterThanEqual(pixel, size - guard))) return;
     uint layers = texelFetch(mask, pixel >> mask_shift, 0).r;
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < params.samples; ++i)
-        sum += ray(gl_FragCoord.xy, texelFetch(lens_points, ivec2(i, 0), 0).xy, layers);
-    color = sum.a > 0.0 ? vec4(sum.rgb / sum.a, 1.0) : ray(gl_FragCoord.xy, vec2(0.0), layers);
-    if (color.a == 0.0) color = vec4(background, 1.0);
+    vec2 start = (gl_FragCoord.xy - detail_shift) * detail;
+    vec4 random = texelFetch(noise, pixel & 63, 0), sum = vec4(0.0);
+    for (int i = 0; i < params.samples; ++i) sum += ray(start, lens_sample(i, random), layers);
+    if (params.show == SHOW_PROBES) {
+        color = vec4(heat(float(probes_made) / float(8 * params.samples)), 1.0);
+        return;
+    }
+    if (sum.a <= 0.0) sum = ray(start, vec2(0.0), layers);
+    if (sum.a > 0.0) color = vec4(sum.rgb / sum.a, 1.0);
 }

@@ -1,0 +1,7 @@
+// No layer found yet.
+out uint bits;
+
+void main()
+{
+    bits = 0u;
+}

@@ -1,0 +1,41 @@
+// What a ray sees where it meets a layer: the colour that the lens centre saw, or, with SURFACES, the surface lit for the
+// point of the lens that the ray came from. Premultiplied by how much of the cone around the ray the layer covers.
+uniform sampler2DArray layer_color;
+
+#ifdef SURFACES
+#include "include/shading.glsl"
+#include <View>
+
+uniform sampler2DArray layer_normal;
+uniform sampler2DArray layer_emissive;
+uniform sampler2DArray layer_occlusion;
+#endif
+
+vec4 read_layer(sampler2DArray layer, vec2 q, int k, float level)
+{
+    if (level < 0.0) return texelFetch(layer, ivec3(floor(q), k), 0);
+    return textureLod(layer, vec3(q / vec2(textureSize(layer, 0).xy), float(k)), level);
+}
+
+// At texel position `q` of layer `k` and depth 1 / `inverse_depth`; `level` below 0 reads the texel itself.
+vec4 seen(vec2 q, int k, float level, float inverse_depth, vec2 lens_point)
+{
+    vec4 color = read_layer(layer_color, q, k, level);
+#ifdef SURFACES
+    if (color.a <= 0.0) return vec4(0.0);
+    float whole = 1.0 / color.a;
+    vec4 normal = read_layer(layer_normal, q, k, level) * whole;
+    vec4 emissive = read_layer(layer_emissive, q, k, level) * whole;
+    float occlusion = read_layer(layer_occlusion, q, k, level).r * whole;
+    vec2 pixel = q / detail + detail_shift;
+    vec3 toward = view.corner + pixel.x * view.right + pixel.y * view.up;
+    vec3 to_eye = lens_point.x * view.lens_right + lens_point.y * view.lens_up - toward / inverse_depth;
+    float length_ = length(normal.xyz);
+    Surface surface = Surface(
+        color.rgb * whole, 1.0, length_ > 0.0 ? normal.xyz / length_ : vec3(0.0), emissive.w, normal.w, occlusion,
+        emissive.rgb
+    );
+    color.rgb = min(shade(surface, normalize(to_eye)), 1e4) * color.a;
+#endif
+    return color;
+}
