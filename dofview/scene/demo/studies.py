@@ -21,6 +21,7 @@ GLOSSY = {
         "vfov_deg": 40.0, "near": 2.0, "far": 14.0,
     },
     "lens": {"radius": 0.11, "focus_distance": 5.0, "distribution": "uniform_disc"},
+    "light": {"environment": "studio"},
     "image": {"size": [512, 384]},
     "background_linear": [0.2, 0.2, 0.22],
 }  # fmt: skip
@@ -56,8 +57,8 @@ STANDING = (
 
 
 def glossy() -> list[Part]:
-    """Balls, rings and pawns of polished metal on a stone table."""
-    table = painted("table", paint.checker(171, ("cbbfa8", "2c2a2c"), 4, 512), 0.6)
+    """Balls, rings and pawns of polished metal on a steel table that mirrors a studio."""
+    table = painted("table", paint.checker(171, ("cbbfa8", "6a6668"), 4, 512), 0.08, 1.0)
     back = painted("back", paint.kilim(172, ("8e2f24", "e8d6ad", "26404f", "d08a3a"), 8), 0.9)
     gold = painted("gold", paint.plaster(173, ("efbb58", "f4c566", "f8cf76"), 1.5), 0.14, 1.0)
     silver = painted("silver", paint.plaster(174, ("dedddb", "e8e7e3", "f2f0eb"), 1.5), 0.08, 1.0)
