@@ -1,7 +1,7 @@
 """Write the tables of docs/viewer.md from the viewer's own entries: `make docs`.
 
-A table stands between <!-- NAME --> and <!-- /NAME -->. With `--check` nothing is written, and the exit status is 1 when
-a table is old.
+A table stands between <!-- NAME --> and <!-- /NAME -->. With `--check` nothing is written, and the exit status is 1
+when a table is old.
 """
 
 from __future__ import annotations

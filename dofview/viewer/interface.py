@@ -57,7 +57,11 @@ class Appearance(Tool):
                 setattr(style, name, value)
         style.font_scale_dpi = app.content_scale
         style.font_scale_main = app.interface.scale
-        (imgui.style_colors_light if app.interface.theme == Theme.LIGHT else imgui.style_colors_dark)()
+        light = app.interface.theme == Theme.LIGHT
+        (imgui.style_colors_light if light else imgui.style_colors_dark)()
+        # imgui's own grey is hard to read.
+        grey = 0.36 if light else 0.66
+        style.set_color_(imgui.Col_.text_disabled, (grey, grey, grey, 1.0))
 
     def panel(self, app: App) -> None:
         interface = edit(app.interface)

@@ -81,6 +81,9 @@ class Opening(Tool):
 
     def update(self, app: App) -> None:
         self._store = app.store
+        if app.store.problem:
+            app.report(app.store.problem)
+            app.store.problem = ""
         if self._shown is None:
             self._remember(app)
         self._shown = (app.spec, app.settings)
