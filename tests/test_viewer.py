@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import subprocess
@@ -124,6 +125,14 @@ class Window:
             self.xdo("mousemove", *point, "sleep", 0.1)
         self.xdo("mouseup", 1)
 
+    def quit(self) -> int:
+        """Press Ctrl+Q until the program has ended, and return its exit status."""
+        for _ in range(9):
+            self.key("ctrl+q")
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                return self.process.wait(timeout=10)
+        raise AssertionError("the window did not close")
+
     def until(
         self, what: str, wanted: Callable[[np.ndarray], bool], act: Callable[[], None] = lambda: None
     ) -> np.ndarray:
@@ -185,6 +194,5 @@ def test_the_real_window(display: dict[str, str], tmp_path: Path):
     window.key("Return")
     window.until("another scene is shown", lambda p: changed(p, wider, 10.0))
 
-    window.key("ctrl+q")
-    assert window.process.wait(timeout=30) == 0
+    assert window.quit() == 0
     assert window.process.stderr is not None and "Traceback" not in window.process.stderr.read()
