@@ -56,8 +56,8 @@ class GazeSettings(BaseModel):
         default=0.006, ge=0.0, le=0.05, json_schema_extra={"unit": "of the height"},
         description="The depth looked at is the median within this radius, share of the picture's height.",
     )  # fmt: skip
-    rate_hz: int = Field(
-        default=60, ge=1, le=1000, json_schema_extra={"unit": "1/s"},
+    rate_hz: float = Field(
+        default=60.0, ge=1.0, le=1000.0, json_schema_extra={"unit": "1/s"},
         description="Steps of the focus a second; a replay shows each of them.",
     )  # fmt: skip
 

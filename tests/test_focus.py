@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import math
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +18,7 @@ from dofview.errors import InputError
 from dofview.focus import GazeSettings, Look, Pull, Row, Trace
 from dofview.lens import HumanEye, Lens, focal_px
 from dofview.pipeline import Pipeline
+from dofview.record.paths import gaze
 from dofview.scene.camera import Camera
 from dofview.settings import ImageSettings, Settings
 
@@ -149,6 +155,29 @@ def test_the_eye_blurs_as_in_the_paper(focus_mm: float):
         ours = 2.0 * abs(law.radius_px(1e3 / depth_mm))
         assert ours == pytest.approx(diameter * (focus_mm - 17.0) / focus_mm, rel=1e-12)
         assert diameter < 10.0, "the paper: not above 10 pixels from 300 mm on"
+
+
+def test_a_film_of_a_gaze_has_the_focus_of_its_replay():
+    trace = Trace(Row(n / 10, Look(point), 5.0) for n, point in enumerate((NEAR, FAR, NEAR, (0.2, 0.1))))
+    how = GazeSettings(rate_hz=24.0)
+    seen = gaze(Settings(), trace, lambda settings, x, y: depth_at(x, y), how)
+    replayed = focus.replay(trace, Pull.at(5.0), 20, depth_at, how, 4 / 3)
+    distances = [pull.distance for pull in replayed]
+    assert [seen(frame).lens.focus_distance for frame in range(20)] == distances
+    assert seen(3).lens.focus_distance == distances[3], "any frame may be asked for again"
+
+
+def test_a_gaze_is_recorded_without_a_window(tmp_path):
+    (tmp_path / "gaze.csv").write_text("time_s,x,y\n0,0.5,0.5\n0.4,0.5,0.5\n")
+    command = [sys.executable, "-m", "dofview", "record", "demo:crossing", "--path", "gaze", "--method", "pinhole",
+               "--size", "32x24", "--fps", "10", "-o", str(tmp_path / "%02d.png")]  # fmt: skip
+    root = str(Path(focus.__file__).parents[1])
+    run = {"capture_output": True, "text": True, "env": {**os.environ, "PYTHONPATH": root}}
+    done = subprocess.run([*command, "--gaze", str(tmp_path / "gaze.csv")], **run)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout.splitlines()[-1])["frames"] == 5 == len(list(tmp_path.glob("*.png")))
+    done = subprocess.run(command, **run)
+    assert done.returncode == 2 and "--gaze" in done.stderr and done.stderr.count("\n") == 1
 
 
 @pytest.fixture(scope="module")

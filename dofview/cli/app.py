@@ -92,9 +92,9 @@ def render(
 
 def record(
     scene: Spec, /, *, output: Annotated[Path, Parameter(name=("--output", "-o"))], view: View = None,
-    method: MethodName = None, camera: CameraName = None, path: str = "turntable", seconds: float = 4.0,
-    fps: float = 30.0, focus_from: float | None = None, focus_to: float | None = None, keyframes: Path | None = None,
-    given: Given,
+    method: MethodName = None, camera: CameraName = None, path: str = "turntable",
+    seconds: float | None = None, fps: float = 30.0, focus_from: float | None = None, focus_to: float | None = None,
+    keyframes: Path | None = None, gaze: Path | None = None, given: Given,
 ) -> None:  # fmt: skip
     """Render a film without a screen. Time is frame / fps: two runs give the same film.
 
@@ -103,15 +103,19 @@ def record(
     output
         .mp4, .webm, .gif, or a pattern for pictures as frames/%04d.png or .exr.
     path
-        turntable, rack (focus), keyframes or still.
+        turntable, rack (focus), keyframes, gaze or still.
+    seconds
+        Length of the film; 4, or as long as the gaze.
     keyframes
         A JSON list of views, passed through at equal times.
+    gaze
+        A CSV file with time_s, x, y: where somebody looked. The focus follows.
     """
     from dofview.cli.recording import record_to
 
     record_to(
         scene, output, given, view=view, method=method, camera=camera, kind=path, seconds=seconds, fps=fps,
-        focus_from=focus_from, focus_to=focus_to, keys=keyframes,
+        focus_from=focus_from, focus_to=focus_to, keys=keyframes, trace=gaze,
     )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ import contextlib
 import json as jsonlib
 from collections.abc import Iterator
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
@@ -15,11 +16,14 @@ from dofview.cli.chosen import applied, settings_for
 from dofview.cli.flags import Given
 from dofview.cli.picture import headless, tell_warnings
 from dofview.errors import SettingsError
-from dofview.record.paths import Path_, keyframes, rack_focus, read_keyframes, still, turntable
+from dofview.focus import GazeSettings, Trace, read_trace
+from dofview.record.paths import Path_, gaze, keyframes, rack_focus, read_keyframes, still, turntable
 from dofview.record.run import frame_count, record
 from dofview.record.writers import check
 from dofview.scene.load import load
-from dofview.settings import Settings
+from dofview.settings import Settings, checked
+
+DEFAULT_S = 4.0
 
 
 class PathKind(StrEnum):
@@ -28,24 +32,33 @@ class PathKind(StrEnum):
     TURNTABLE = "turntable"
     RACK = "rack"
     KEYFRAMES = "keyframes"
+    GAZE = "gaze"
     STILL = "still"
 
 
 def record_to(
     spec: str, output: Path, given: Given, *, view: Path | None, method: str | None, camera: str | None, kind: str,
-    seconds: float, fps: float, focus_from: float | None, focus_to: float | None, keys: Path | None,
+    seconds: float | None, fps: float, focus_from: float | None, focus_to: float | None, keys: Path | None,
+    trace: Path | None,
 ) -> None:  # fmt: skip
     """Render a film and print its facts, the last line as JSON."""
     if kind not in list(PathKind):
         raise SettingsError(f"path is {kind[:40]!r}; accepted: {', '.join(PathKind)}")
-    frames = frame_count(seconds, fps)
+    frames = frame_count(DEFAULT_S if seconds is None else seconds, fps)
+    looks = _trace(trace, fps) if kind == PathKind.GAZE else None
+    if looks is not None and seconds is None:
+        frames = looks[0].ticks(looks[1])
     applied(Settings(), given, view=view, method=method)
     check(output)
     scene = load(spec)
     settings = settings_for(scene, spec, given, view=view, method=method, camera=camera)
     tell_warnings(scene)
-    path = _path(PathKind(kind), settings, frames, focus_from, focus_to, keys)
     with headless(scene) as pipeline, _progress(frames) as advance:
+        if looks is not None:
+            depth = partial(pipeline.inverse_depth, radius=looks[1].depth_radius)
+            path = gaze(settings, looks[0], depth, looks[1])
+        else:
+            path = _path(PathKind(kind), settings, frames, focus_from, focus_to, keys)
         record(pipeline, path, frames, output, fps, advance)
         renderer = pipeline.gpu.renderer
     facts = {"output": str(output), "frames": frames, "fps": fps, "size": list(settings.image.size),
@@ -67,6 +80,12 @@ def _path(
                 raise SettingsError("a path of keyframes needs --keyframes FILE, a JSON list of views")
             return keyframes(settings, frames, read_keyframes(keys, settings))
     return still(settings)
+
+
+def _trace(path: Path | None, fps: float) -> tuple[Trace, GazeSettings]:
+    if path is None:
+        raise SettingsError("a path of gaze needs --gaze FILE, a CSV file with time_s, x, y")
+    return read_trace(path), checked(GazeSettings, {"rate_hz": fps}, "fps")
 
 
 @contextlib.contextmanager

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from dofview.errors import SettingsError
+from dofview.focus import GazeSettings, Pull, Trace, step
 from dofview.scene.navigation import orbit
 from dofview.settings import Settings, apply_view
 
@@ -37,8 +38,30 @@ def rack_focus(settings: Settings, frames: int, start: float, end: float) -> Pat
     def at(frame: int) -> Settings:
         t = _ease(frame / max(frames - 1, 1))
         inverse = (1.0 - t) / start + t / end
-        focus = 1.0 / inverse if inverse > 0.0 else math.inf
-        return settings.with_(lens=settings.lens.model_copy(update={"focus_distance": focus}))
+        return _focused(settings, 1.0 / inverse if inverse > 0.0 else math.inf)
+
+    return at
+
+
+def gaze(
+    settings: Settings, trace: Trace, inverse_depth: Callable[[Settings, float, float], float], how: GazeSettings
+) -> Path_:  # fmt: skip
+    """Focus as a recorded gaze pulls it, a step a frame: what a replay in the window shows at `how.rate_hz`.
+
+    `inverse_depth` is asked what is under a point of the picture of some settings (`Pipeline.inverse_depth`).
+    """
+    pull = trace.start or Pull.at(settings.lens.focus_distance)
+    width, height = settings.image.size
+    seen = [_focused(settings, pull.distance)]
+
+    def at(frame: int) -> Settings:
+        nonlocal pull
+        while len(seen) <= frame + 1:
+            tick, now = len(seen) - 1, seen[-1]
+            look = trace.at(tick / how.rate_hz)
+            pull = step(pull, look, tick, lambda x, y, now=now: inverse_depth(now, x, y), how, width / height)
+            seen.append(_focused(settings, pull.distance))
+        return seen[frame + 1]
 
     return at
 
@@ -75,6 +98,10 @@ def read_keyframes(path: Path, settings: Settings) -> list[Settings]:
     if not isinstance(found, list):
         raise SettingsError(f"{path}: keyframes are a JSON list of views")
     return [apply_view(settings, view, f"{path}: view {number}") for number, view in enumerate(found)]
+
+
+def _focused(settings: Settings, distance: float) -> Settings:
+    return settings.with_(lens=settings.lens.model_copy(update={"focus_distance": distance}))
 
 
 def _ease(t: float) -> float:

@@ -140,7 +140,9 @@ class Gaze(Tool):
         if on != self.on:
             self.switch(app, on)
         self.frozen = imgui.checkbox("frozen##gaze", self.frozen)[1]
-        self.settings = edit(self.settings, ranges={"speed": (0.5, 50.0), "dwell_s": (0.0, 1.0)})
+        self.settings = edit(self.settings, ranges={
+            "speed": (0.5, 50.0), "dwell_s": (0.0, 1.0), "rate_hz": (10.0, 240.0),
+        })  # fmt: skip
         if imgui.button("End and save##gaze" if self._rows is not None else "Record##gaze"):
             self.record(app, self._rows is None)
         imgui.same_line()

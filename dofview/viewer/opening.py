@@ -102,7 +102,8 @@ class Opening(Tool):
     def scene_changed(self, app: App) -> None:
         if self._shown is None or key_of(self._shown[0]) != key_of(app.spec):
             self._keep()
-            restore_view(app)
+            if app.settings == app.home:  # another tool may have a view for it
+                restore_view(app)
             self._remember(app)
         self._shown = (app.spec, app.settings)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,21 +11,22 @@ from imgui_bundle import imgui
 
 from dofview import export
 from dofview.errors import DofviewError, InputError
-from dofview.record.paths import Path_, rack_focus, turntable
+from dofview.record.paths import Path_, gaze, rack_focus, turntable
 from dofview.record.run import Encoder, frame_count
 from dofview.record.writers import check, writer
 from dofview.remember import note, read_note, read_preset, write_preset
 from dofview.settings import Settings
 from dofview.viewer.actions import CTRL, SHIFT, Action
 from dofview.viewer.files import unused_name
+from dofview.viewer.gaze import Gaze
 from dofview.viewer.tool import Rect, Tool
 
 if TYPE_CHECKING:
     from dofview.viewer.app import App
 
 KINDS = (".mp4", ".webm", ".gif")
-SEEN, TURNTABLE, RACK = range(3)
-PATHS = ("what is seen", "turntable", "rack focus")
+SEEN, TURNTABLE, RACK, GAZE = range(4)
+PATHS = ("what is seen", "turntable", "rack focus", "recorded gaze")
 
 
 class Output(Tool):
@@ -92,7 +94,7 @@ class Output(Tool):
             film = unused_name(KINDS[self.kind])
             check(film)
             self._planned = 0 if self.path == SEEN else frame_count(self.seconds, self.fps)
-            self._plan = _plan(self.path, app.settings, self._planned)
+            self._plan = self._gaze(app) if self.path == GAZE else _plan(self.path, app.settings, self._planned)
             self._encoder = Encoder(writer(film, app.settings.image.size, self.fps))
         except DofviewError as error:
             app.report(str(error))
@@ -118,6 +120,15 @@ class Output(Tool):
             self._encoder.abandon()
             self._encoder = None
             app.report(str(error))
+
+    def _gaze(self, app: App) -> Path_:
+        """The last gaze trace, as long as it is."""
+        trace = app.tool(Gaze).trace
+        if trace is None:
+            raise InputError("no gaze trace yet; record one, or drop a CSV file with time_s, x, y on the window")
+        how = app.tool(Gaze).settings.model_copy(update={"rate_hz": float(self.fps)})
+        self._planned = trace.ticks(how)
+        return gaze(app.settings, trace, partial(app.pipeline.inverse_depth, radius=how.depth_radius), how)
 
     def _add(self, app: App) -> None:
         assert self._encoder is not None and self._before is not None
@@ -159,7 +170,7 @@ class Output(Tool):
         self.path = imgui.combo("film of##film", self.path, list(PATHS))[1]
         self.kind = imgui.combo("kind##film", self.kind, list(KINDS))[1]
         self.fps = imgui.slider_int("frames a second##film", self.fps, 1, 60, "%d", imgui.SliderFlags_.always_clamp)[1]
-        if self.path != SEEN:
+        if self.path in (TURNTABLE, RACK):
             flags = imgui.SliderFlags_.always_clamp
             self.seconds = imgui.slider_float("seconds##film", self.seconds, 0.5, 60.0, "%.1f", flags)[1]
         imgui.end_disabled()
