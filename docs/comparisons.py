@@ -21,6 +21,7 @@ from dofview.settings import Settings
 IMAGES = Path(__file__).parent / "images"
 VIEWS = 256
 COMPARED = {
+    "layered": ("demo:foreground", "gaussian", (272, 204)),
     "mipmap": ("demo:background", "gaussian", (320, 240)),
     "pyramid": ("demo:foreground", "gaussian", (272, 204)),
 }

@@ -154,7 +154,7 @@ class Pipeline:
         scale = (frame.inner_size[0] / size[0], frame.inner_size[1] / size[1])
         draw(
             self.gpu, "render/resolve.frag", picture, textures={"canvas": canvas},
-            values={"scale": scale, "guard": frame.guard},
+            values={"scale": scale, "guard": frame.guard}, defines={"SAME_SIZE": 1} if scale == (1.0, 1.0) else {},
         )  # fmt: skip
         return picture
 

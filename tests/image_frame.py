@@ -20,6 +20,7 @@ class ImageFrame(Frame):
         self.lens_block = LensBlock(scale=1000.0, inverse_focus=1.0, sigma=sigma)
         self.inner_size = self.size = (color.shape[1], color.shape[0])
         self.guard = 0
+        self.background = (0.0, 0.0, 0.0)
         self.cache = FrameCache()
         self.geometry_key = (id(self),)
         self._inverse_depth = np.asarray(self.coc.inverse_depth(np.broadcast_to(coc, color.shape[:2])), np.float32)

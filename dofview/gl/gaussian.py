@@ -19,6 +19,7 @@ from dofview.gl.context import Gpu
 from dofview.gl.passes import draw
 from dofview.gl.pyramids import Analysis, expand, level_size, reduce
 from dofview.gl.targets import Image
+from dofview.gl.tiles import Tiles
 
 TRUNCATION = 3.0
 """Where a kernel is cut, in σ. Cut at 2 a blurred picture is 47–53 dB from the exact one, at 3 70–78 dB."""
@@ -60,22 +61,24 @@ def paired(weights: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
     return tuple(taps)
 
 
-def blur_axis(
-    gpu: Gpu, source: Image, into: Image, sigma: float, axis: tuple[int, int], *, truncation: float = TRUNCATION,
-    bilinear: bool = False,
+def convolve(
+    gpu: Gpu, source: Image, into: Image, weights: tuple[float, ...], axis: tuple[int, int], *, bilinear: bool = False,
+    within: Tiles | None = None, clear: bool | tuple[float, ...] = False,
 ) -> None:  # fmt: skip
-    """Blur along one `axis`, (1, 0) or (0, 1); beyond the border the last texel is repeated.
+    """Filter along one `axis`, (1, 0) or (0, 1); beyond the border the last texel is repeated.
 
     `bilinear` reads two texels with each tap and needs a `source` with linear filtering: half the fetches, which pays
     where a bilinear fetch costs as much as a plain one. A software rasteriser's costs twice as much.
     """
-    weights = kernel(sigma, truncation)
     if bilinear:
         taps = np.array(paired(weights), np.float32)
         defines, values = {"BILINEAR": 1, "TAPS": len(taps)}, {"taps": taps.tobytes()}
     else:
         defines, values = {"TAPS": len(weights)}, {"weights": np.array(weights, np.float32).tobytes()}
-    draw(gpu, "pass/gaussian.frag", into, textures={"source": source}, values={**values, "axis": axis}, defines=defines)
+    draw(
+        gpu, "pass/gaussian.frag", into, textures={"source": source}, values={**values, "axis": axis}, defines=defines,
+        within=within, clear=clear,
+    )  # fmt: skip
 
 
 def blur(
@@ -90,8 +93,9 @@ def blur(
         reduce(gpu, chain[-2], chain[-1])
     left = math.sqrt(max(sigma**2 - Analysis.SPLINE.blur_sigma(levels) ** 2, 0.0)) / 2**levels
     across, result = (_image(gpu, f"{name}/{what} {levels}", source, levels) for what in ("across", "blurred"))
-    blur_axis(gpu, chain[-1], across, left, (1, 0), truncation=truncation, bilinear=bilinear)
-    blur_axis(gpu, across, result, left, (0, 1), truncation=truncation, bilinear=bilinear)
+    weights = kernel(left, truncation)
+    convolve(gpu, chain[-1], across, weights, (1, 0), bilinear=bilinear)
+    convolve(gpu, across, result, weights, (0, 1), bilinear=bilinear)
     for level in reversed(range(levels)):
         finer = _image(gpu, f"{name}/blurred {level}", source, level)
         expand(gpu, result, finer)

@@ -10,6 +10,7 @@ from pydantic import BaseModel
 from dofview.gl.context import Gpu
 from dofview.gl.shaders import Defines, Program
 from dofview.gl.targets import Image
+from dofview.gl.tiles import Tiles
 from dofview.gl.uniforms import block_bytes, block_glsl
 
 ADD = (moderngl.ONE, moderngl.ONE)
@@ -55,16 +56,25 @@ def block_texts(blocks: Blocks) -> dict[str, str]:
 def draw(
     gpu: Gpu, shader: str, into: Image | Sequence[Image], *, textures: Textures | None = None,
     blocks: Blocks | None = None, values: Mapping[str, object] | None = None, defines: Defines | None = None,
-    blend: tuple | None = None, clear: bool = False, viewport: tuple[int, int, int, int] | None = None,
+    blend: tuple | None = None, clear: bool | tuple[float, ...] = False,
+    viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None,
     vertex: str = "pass/fullscreen.vert", geometry: str | None = None,
 ) -> None:  # fmt: skip
     """Run the fragment shader `shader` over every pixel of `into` (one image, or several of one size), or over the
-    part of them that `viewport` (left, bottom, width, height) names; `clear` is of the whole.
+    part of them that `viewport` (left, bottom, width, height) or `within` name; `clear`, to 0 or to a colour, is of the
+    whole.
 
     `geometry` names a geometry shader that chooses the layer when `into` are arrays (pass/to_layer.geom).
     """
     images = (into,) if isinstance(into, Image) else tuple(into)
     blocks = blocks or {}
+    width, height = viewport[2:] if viewport else images[0].size
+    vertices, fragments = 3, width * height
+    if within is not None:
+        vertex, vertices, fragments = "pass/tiles.vert", 6 * within.count, within.area >> 2 * within.level
+        extent = (width << within.level, height << within.level)
+        textures = {**(textures or {}), "tile_list": within.image}
+        values = {**(values or {}), "tile_row": within.row, "tile_extent": extent}
     stages = (vertex, geometry, shader) if geometry else (vertex, shader)
     program = gpu.shaders.program(*stages, defines=defines, blocks=block_texts(blocks))
     framebuffer = gpu.targets.framebuffer(images)
@@ -76,11 +86,12 @@ def draw(
         ctx.blend_func = blend
         ctx.blend_equation = moderngl.FUNC_ADD
     if clear:
-        framebuffer.clear()
+        framebuffer.clear(*(clear if isinstance(clear, tuple) else ()))
+    if vertices == 0:
+        return
     bind(gpu, program, textures or {}, blocks, values or {})
     if 0 not in program.arrays:
         program.arrays[0] = ctx.vertex_array(program.gl, [])
-    program.arrays[0].render(moderngl.TRIANGLES, vertices=3)
+    program.arrays[0].render(moderngl.TRIANGLES, vertices=vertices)
     gpu.profile.count("passes")
-    width, height = viewport[2:] if viewport else images[0].size
-    gpu.profile.count("fragments", width * height)
+    gpu.profile.count("fragments", fragments)

@@ -22,20 +22,20 @@ Pair = tuple[Image, Image]
 
 def pull_push(
     gpu: Gpu, name: str, size: Size, known: str = KNOWN, *, textures: Textures, blocks: Blocks | None = None,
-    values: Mapping[str, object] | None = None,
+    values: Mapping[str, object] | None = None, defines: Mapping[str, object] | None = None,
 ) -> Pair:  # fmt: skip
     """Return the filled level 1 over an image of `size`: colours times weight with the weight in alpha, and one more
     value times it. Level 0 is `pass/push.frag`, or a shader that does its work on the way.
 
-    `known` names the GLSL file that says what level 0 knows (`pass/pull.frag`); `textures`, `blocks` and `values` are
-    what it reads. The weight of a level is 0 only where nothing at all is known.
+    `known` names the GLSL file that says what level 0 knows (`pass/pull.frag`); `textures`, `blocks`, `values`
+    and `defines` are what it reads. The weight of a level is 0 only where nothing at all is known.
     """
     top = max(most_levels(size), 1)
     pulled = [_pair(gpu, f"{name} pulled", size, level) for level in range(1, top + 1)]
-    _pull(gpu, size, pulled[0], known, textures, blocks or {}, values or {})
+    _pull(gpu, size, pulled[0], known, textures, blocks or {}, values or {}, defines or {})
     for level in range(2, top + 1):
         source = dict(zip(("colors", "extras"), pulled[level - 2], strict=True))
-        _pull(gpu, level_size(size, level - 1), pulled[level - 1], KNOWN, source, {}, {})
+        _pull(gpu, level_size(size, level - 1), pulled[level - 1], KNOWN, source, {}, {}, {})
     filled = pulled[-1]
     for level in range(top - 1, 0, -1):
         own = dict(zip(("colors", "extras"), pulled[level - 1], strict=True))
@@ -54,11 +54,12 @@ def fill(gpu: Gpu, colors: Image, extras: Image, into: Pair, name: str) -> None:
 
 
 def _pull(
-    gpu: Gpu, fine_size: Size, into: Pair, known: str, textures: Textures, blocks: Blocks, values: Mapping[str, object]
-) -> None:
+    gpu: Gpu, fine_size: Size, into: Pair, known: str, textures: Textures, blocks: Blocks, values: Mapping[str, object],
+    defines: Mapping[str, object],
+) -> None:  # fmt: skip
     draw(
         gpu, "pass/pull.frag", into, textures=textures, blocks=blocks, values={**values, "fine_size": fine_size},
-        defines={"KNOWN": known},
+        defines={**defines, "KNOWN": known},
     )  # fmt: skip
 
 

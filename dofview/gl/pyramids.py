@@ -16,6 +16,7 @@ import numpy as np
 from dofview.gl.context import Gpu
 from dofview.gl.passes import draw
 from dofview.gl.targets import Image
+from dofview.gl.tiles import Tiles
 
 Size = tuple[int, int]
 
@@ -56,14 +57,22 @@ def pyramid(gpu: Gpu, name: str, size: Size, levels: int, components: int = 4) -
     ]
 
 
-def reduce(gpu: Gpu, fine: Image, coarse: Image, analysis: Analysis = Analysis.SPLINE) -> None:
+def reduce(
+    gpu: Gpu, fine: Image, coarse: Image, analysis: Analysis = Analysis.SPLINE, *, blend: tuple | None = None,
+    within: Tiles | None = None, clear: bool | tuple[float, ...] = False,
+) -> None:  # fmt: skip
     """Write `coarse`, half the size of `fine` rounded up. `fine` must be fetched bilinearly (`linear=True`)."""
-    draw(gpu, "pass/reduce.frag", coarse, textures={"fine": fine}, defines={analysis.name: 1})
+    draw(
+        gpu, "pass/reduce.frag", coarse, textures={"fine": fine}, defines={analysis.name: 1}, blend=blend, within=within,
+        clear=clear,
+    )  # fmt: skip
 
 
-def expand(gpu: Gpu, coarse: Image, fine: Image) -> None:
+def expand(
+    gpu: Gpu, coarse: Image, fine: Image, *, within: Tiles | None = None, clear: bool | tuple[float, ...] = False
+) -> None:
     """Write `fine`, of twice the size of `coarse`, by biquadratic B-splines."""
-    draw(gpu, "pass/expand.frag", fine, textures={"coarse": coarse})
+    draw(gpu, "pass/expand.frag", fine, textures={"coarse": coarse}, within=within, clear=clear)
 
 
 def blur(gpu: Gpu, levels: Sequence[Image], analysis: Analysis = Analysis.SPLINE) -> Image:

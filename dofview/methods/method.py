@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict
 
 from dofview.gl.passes import draw
 from dofview.gl.targets import Image
+from dofview.gl.tiles import Tiles
 from dofview.render.frame import Frame
 
 
@@ -64,7 +65,8 @@ class Recipe:
     def draw(
         self, shader: str, into: Image | Sequence[Image], *, values: Mapping[str, object] | None = None,
         defines: Mapping[str, object] | None = None, blocks: Mapping[str, BaseModel] | None = None,
-        blend: tuple | None = None, clear: bool = False, viewport: tuple[int, int, int, int] | None = None,
+        blend: tuple | None = None, clear: bool | tuple[float, ...] = False,
+        viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None,
         images: Mapping[str, Image] | None = None, **textures: Image,
     ) -> None:  # fmt: skip
         """Run `shader` of the method's folder (or of shaders/ when it has a folder of its own) into `into`. It reads
@@ -74,5 +76,5 @@ class Recipe:
             draw(
                 self.gpu, path, into, textures={**textures, **(images or {})},
                 blocks={**self.blocks, **(blocks or {})}, values=values, defines=defines, blend=blend, clear=clear,
-                viewport=viewport,
+                viewport=viewport, within=within,
             )  # fmt: skip

@@ -14,6 +14,9 @@ vec4 fetch(ivec2 texel, ivec2 inner)
 void main()
 {
     ivec2 inner = textureSize(canvas, 0) - 2 * guard;
+#ifdef SAME_SIZE
+    color = fetch(ivec2(gl_FragCoord.xy), inner);
+#else
     vec2 center = gl_FragCoord.xy * scale;
     if (scale.x < 1.0) {
         vec2 position = center - 0.5;
@@ -31,4 +34,5 @@ void main()
             color += fetch(ivec2(x, y), inner) * covered.x * covered.y;
         }
     color /= scale.x * scale.y;
+#endif
 }

@@ -1,5 +1,6 @@
-// Front buffer over the layer in focus over the back buffer. What no peel knew leaves coverage below 1 there: dividing by
-// it fills such gaps, and the bands on steep surfaces, with what surrounds them.
+// Front buffer over the layer in focus over the back buffer. Where no peel knew what is behind, and on steep surfaces between
+// layers, coverage is below 1: the rest is FILLed from what is known behind the front buffer, or what is there is divided
+// by its coverage (GPU Pro 4, p. 206).
 #include "methods/layered/matte.glsl"
 
 #ifdef HAS_FRONT
@@ -7,6 +8,9 @@ uniform sampler2D front;
 #endif
 #ifdef HAS_BACK
 uniform sampler2D back;
+#endif
+#ifdef FILL
+uniform sampler2D filled;  // half the size
 #endif
 uniform vec4 start;
 
@@ -26,5 +30,8 @@ void main()
 #else
     sum += max(1.0 - sum.a, 0.0) * start;
 #endif
-    color = vec4(sum.a > 1e-4 ? sum.rgb / sum.a : background, 1.0);
+#ifdef FILL
+    sum += max(1.0 - sum.a, 0.0) * texture(filled, 0.5 * gl_FragCoord.xy / vec2(textureSize(filled, 0)));
+#endif
+    color = vec4(sum.a > 1e-4 ? sum.rgb / sum.a : background.rgb, 1.0);
 }

@@ -7,9 +7,13 @@
 // SHARED: anchors lie at the layers' own depths. Of a surface between layers k-1 and k, the nearer of them takes the
 // `head`, 1-t, and layer k the `tail`, t. In the front buffer the head is there first and has been blurred: beside it
 // the tail adds t, or what coverage is left, so that the silhouette is the mean of the two blurs. In the back buffer the
-// sharper head is blended over the tail, which therefore may stay whole.
+// sharper head is blended over the tail, which therefore may stay whole; only its beginning is softened, or a silhouette
+// would get its halo at once when it crosses a layer.
 // PAPER: anchors lie half way between layers; omega and omega-dot as printed. The tail is whole in front too and lies
 // under its own head, which widens every silhouette by a part of the blur between two layers.
+const float MARGIN = 1e-5;
+const float TAIL_SLOPE = 10.0;
+
 uniform sampler2D depths_first;
 uniform sampler2D color0;
 #if PEELS > 1
@@ -35,12 +39,12 @@ uniform sampler2D color6;
 uniform sampler2D color7;
 #endif
 uniform vec4 anchors;  // inverse depths z_(k-2), z_(k-1), z_k, z_(k+1) of layer k, falling
-uniform vec3 background;
+uniform vec4 background;  // alpha 0: it cannot be seen, and what lies behind the last surface does not matter
 
 struct Surface
 {
     float inverse_depth;
-    vec3 color;
+    vec4 color;  // alpha 0 or 1
 };
 
 void fetch_surfaces(ivec2 pixel, out Surface surfaces[PEELS])
@@ -48,7 +52,7 @@ void fetch_surfaces(ivec2 pixel, out Surface surfaces[PEELS])
     float inverse_depths[8];
     vec4 depths = texelFetch(depths_first, pixel, 0), colors[PEELS];
     for (int i = 0; i < 4; ++i) inverse_depths[i] = depths[i];
-    colors[0] = vec4(texelFetch(color0, pixel, 0).rgb, 1.0);
+    colors[0] = texelFetch(color0, pixel, 0);
 #if PEELS > 1
     colors[1] = texelFetch(color1, pixel, 0);
 #endif
@@ -72,15 +76,17 @@ void fetch_surfaces(ivec2 pixel, out Surface surfaces[PEELS])
 #if PEELS > 7
     colors[7] = texelFetch(color7, pixel, 0);
 #endif
-    // Behind the last surface of a pixel is the background, which is known, and opaque.
+    // Behind the last surface of a pixel is the background, which is known.
+    vec4 behind_all = vec4(background.rgb, 1.0) * background.a;
     for (int m = 0; m < PEELS; ++m)
-        surfaces[m] = Surface(inverse_depths[m], mix(background, colors[m].rgb, colors[m].a));
+        surfaces[m] = Surface(inverse_depths[m], inverse_depths[m] > 0.0 ? vec4(colors[m].rgb, 1.0) : behind_all);
 }
 
-// 0 at `near` and before, 1 at `far` and beyond.
+// 0 at `near` and before, 1 at `far` and beyond, and exactly so within MARGIN of them: a wall in the plane of focus, a few
+// millionths of a pixel to either side of it, is no content of the layers next to it.
 float ramp(float inverse_depth, float near, float far)
 {
-    return clamp((near - inverse_depth) / max(near - far, 1e-37), 0.0, 1.0);
+    return clamp((near - inverse_depth) / max(near - far, 1e-37) * (1.0 + 2.0 * MARGIN) - MARGIN, 0.0, 1.0);
 }
 
 // The part of a surface that lies behind this layer's anchor. A surface right behind another one of the same interval
@@ -92,7 +98,8 @@ float head(float inverse_depth, float before)
 
 float tail(float inverse_depth, float before)
 {
-    return before >= anchors.y ? ramp(inverse_depth, anchors.y, anchors.z) : 1.0;
+    float share = ramp(inverse_depth, anchors.y, anchors.z);
+    return before >= anchors.y ? share : float(share > 0.0);
 }
 
 // The layer by itself, premultiplied.
@@ -107,9 +114,9 @@ vec4 layer(ivec2 pixel)
 #ifdef PAPER
         float omega = z >= anchors.z ? ramp(z, anchors.x, anchors.y) : m == 0 ? 1.0 - ramp(z, anchors.z, anchors.w) : 0.0;
 #else
-        float omega = z > anchors.y ? 0.0 : z >= anchors.z ? 1.0 : head(z, before);
+        float omega = z > anchors.y ? 0.0 : z >= anchors.z ? min(TAIL_SLOPE * tail(z, before), 1.0) : head(z, before);
 #endif
-        sum += (1.0 - sum.a) * omega * vec4(surfaces[m].color, 1.0);
+        sum += (1.0 - sum.a) * omega * surfaces[m].color;
         before = z;
     }
     return sum;
@@ -127,7 +134,7 @@ vec4 under(vec4 front, ivec2 pixel)
     for (int m = 0; m < PEELS; ++m) {
         float z = surfaces[m].inverse_depth, left = max(1.0 - front.a, 0.0);
         float share = z > anchors.y ? 0.0 : z >= anchors.z ? min(tail(z, before), left) : head(z, before) * left;
-        front += share * vec4(surfaces[m].color, 1.0);
+        front += share * surfaces[m].color;
         before = z;
     }
     return front;

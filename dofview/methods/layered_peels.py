@@ -1,0 +1,98 @@
+"""What `layered` knows of the scene, its peels, and the picture made of them and of the two blurred buffers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from dofview.gl.pull_push import pull_push
+from dofview.gl.targets import Image
+from dofview.methods.layered_plan import Layer
+from dofview.methods.layered_regions import CELL, SLICES, Content, Window
+from dofview.methods.method import Recipe
+from dofview.render.frame import Surfaces
+
+Color = tuple[float, float, float, float]
+
+NOTHING: Color = (0.0, 0.0, 0.0, 0.0)
+
+
+class Peels:
+    """What is known of the scene: colours and inverse depths of the peels, and where they are.
+
+    `exhausted` says that no pixel has surfaces behind the last peel. `start` is what is behind all layers: the
+    background, if it can be seen at all and nothing unknown can be in front of it.
+    """
+
+    def __init__(self, recipe: Recipe, peels: Sequence[Surfaces], exhausted: bool, *, paper: bool):
+        self.recipe = recipe
+        self.frame = recipe.frame
+        visible = self.frame.depth_range().farthest == 0.0
+        self.background: Color = (*self.frame.background, 1.0 if visible else 0.0)
+        self.start = self.background if visible and exhausted else NOTHING
+        self.defines: dict[str, object] = {"PEELS": len(peels), **({"PAPER": 1} if paper else {})}
+        self.depths = self._pack(peels)
+        guard, size = self.frame.guard, self.frame.inner_size
+        self.window = Window(guard, guard, guard + size[0], guard + size[1])
+        self.textures = {f"color{m}": surfaces.color for m, surfaces in enumerate(peels)} | self.depths
+        self.content = self._content(visible and not exhausted)
+
+    def draw(self, shader: str, into: Image, layer: Layer, *, values: dict | None = None, **how: object) -> None:
+        """Run a shader that includes `matte.glsl` for `layer`."""
+        how["defines"] = {**self.defines, **how.get("defines", {})}
+        values = {"start": self.start, **(values or {}), **self._values(layer)}
+        self.recipe.draw(shader, into, values=values, **self.textures, **how)
+
+    def final(self, focus: Layer, sides: dict[str, Image], *, fill: bool) -> Image:
+        """Front buffer over the layer in focus over the back buffer, normalised."""
+        defines = {f"HAS_{side.upper()}": 1 for side in sides}
+        if fill:
+            sides = sides | {"filled": self._filled(focus, sides.get("back"))}
+            defines["FILL"] = 1
+        picture = self.recipe.image("picture")
+        guard = self.frame.guard
+        self.draw(
+            "final.frag", picture, focus, defines=defines, viewport=(guard, guard, *self.frame.inner_size), **sides
+        )
+        return picture
+
+    def _filled(self, focus: Layer, back: Image | None) -> Image:
+        """Half the size: what is behind the front buffer, its holes filled from around them."""
+        textures = self.textures | ({"back": back} if back else {})
+        defines = self.defines | ({"HAS_BACK": 1} if back else {})
+        with self.recipe.gpu.profile.section("layered/fill"):
+            filled, _ = pull_push(
+                self.recipe.gpu, "layered/fill", self.frame.size, "methods/layered/known.glsl", textures=textures,
+                blocks=self.recipe.blocks, values={**self._values(focus), "window": tuple(self.window)},
+                defines=defines,
+            )  # fmt: skip
+        return filled
+
+    def _values(self, layer: Layer) -> dict[str, object]:
+        return {"anchors": layer.anchors, "background": self.background}
+
+    def _pack(self, peels: Sequence[Surfaces]) -> dict[str, Image]:
+        """Inverse depths of four peels in each texel."""
+        names = ["depths_first", "depths_last"][: 1 + (len(peels) > 4)]
+        images = {name: self.recipe.image(name) for name in names}
+        key = (self.frame.geometry_key, len(peels))
+        held = [self.frame.cache.holds(key, image) for image in images.values()]
+        if not all(held):
+            last = peels[-1].inverse_depth
+            sources = {f"depth{m}": peels[m].inverse_depth if m < len(peels) else last for m in range(4 * len(names))}
+            self.recipe.draw("depths.frag", list(images.values()), defines={"PEELS": len(peels)}, **sources)
+        return images
+
+    def _content(self, background_counts: bool) -> Content:
+        """Where surfaces are, cell by cell. Read back once per geometry key."""
+        key = (self.frame.geometry_key, "layered content", self.defines["PEELS"], background_counts)
+        if key not in self.frame.cache.values:
+            depths, size = self.frame.depth_range(), self.frame.size
+            extent = depths.nearest - depths.farthest
+            slices = SLICES / extent if extent > 0.0 else 0.0
+            shape = (-(-size[0] // CELL), -(-size[1] // CELL))
+            images = [self.recipe.image("content", shape, dtype="u4"), self.recipe.image("content extremes", shape)]
+            values = {"nearest": depths.nearest, "slices_per_depth": slices, "background_counts": background_counts}
+            defines = {"CELL": CELL, "PEELS": self.defines["PEELS"]}
+            self.recipe.draw("content.frag", images, defines=defines, values=values, **self.depths)
+            self.frame.cache.values[key] = Content(depths.nearest, slices, *(image.pixels()[::-1] for image in images))
+        return self.frame.cache.values[key]

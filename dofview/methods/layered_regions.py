@@ -1,0 +1,159 @@
+"""Where the layers of `layered` are, and where each of its passes has something to do.
+
+Numbers only, no GL. Surfaces are known by cells of 8 × 8 pixels, passes are drawn by tiles of 4 × 4 cells.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from dofview.gl.tiles import TILE, coarser, grown
+from dofview.methods.layered_plan import MOST_HALVINGS, Layer, Plan, cascade, finishing
+
+CELL = 8
+SLICES = 128
+
+MARGIN = 0.9e-5
+"""A little less than that of `matte.glsl`: within it of an end of a layer's interval a surface has no part in it."""
+
+ROUNDING = 2.0**-22
+
+REACH = 5.0
+"""How far a blur reaches, in σ: less than 1e-6 of it lies beyond."""
+
+
+class Content:
+    """In which slices of depth each cell has surfaces; arrays are (rows, columns), row 0 the bottom one, as in GL.
+
+    Made of the two images of `content.frag`: `bits` (rows, columns, 4) uint32, nearest slice first, and `extremes`
+    (rows, columns, 4), the greatest and least 1/z in the first slice of a cell and in the last.
+    """
+
+    def __init__(self, nearest: float, slices_per_depth: float, bits: np.ndarray, extremes: np.ndarray):
+        self.nearest = nearest
+        self.slices_per_depth = slices_per_depth
+        self._words = [np.ascontiguousarray(bits[..., i]) for i in range(4)]
+        self._extremes = [np.ascontiguousarray(extremes[..., i], np.float64) for i in range(4)]
+        self.shape = bits.shape[:2]
+
+    def cells(self, layer: Layer) -> np.ndarray:
+        """The cells that may have something of `layer`, (rows, columns) bool: its interval, and those it shares."""
+        front, ahead, own, behind = layer.anchors
+        # Depths and anchors are rounded to 24 bits in shaders.
+        near = front - MARGIN * (ahead - own) * (front == ahead) + ROUNDING * abs(front)
+        far = behind + MARGIN * (own - behind) - ROUNDING * abs(behind)
+        first, last = (int(min(max((self.nearest - z) * self.slices_per_depth, 0.0), SLICES - 1)) for z in (near, far))
+        wanted = ((1 << (last - first + 1)) - 1) << first
+        found = (self._extremes[0] >= far) & (self._extremes[1] <= near)
+        found |= (self._extremes[2] >= far) & (self._extremes[3] <= near)
+        for number, word in enumerate(self._words):
+            if wanted >> 32 * number & 0xFFFFFFFF:
+                found |= (word & np.uint32(wanted >> 32 * number & 0xFFFFFFFF)) != 0
+        return found
+
+    def filled(self, plan: Plan) -> Plan:
+        """The plan without layers that nothing belongs to. Their blur goes to the filters of those that remain."""
+        front, back = (tuple(x for x in side if self.cells(x).any()) for side in (plan.front, plan.back))
+        return replace(plan, front=front, back=back)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A layer joins the buffer and the buffer is filtered; all tiles are (rows, columns) bool.
+
+    `sigma` is the filter, in texels of the layer's level. The layer joins in the tiles `own`; in the tiles `others` the
+    buffer is only carried on (at a quarter of the size in all that hold something, and the layer is added to it then);
+    after the filter it is wanted in `after`. The tiles `finished` have no more to come from
+    layers of finer levels: there the buffer is blurred by `finish` instead and enlarged. `rest` are those that come
+    through all steps.
+    """
+
+    layer: Layer
+    sigma: float
+    own: np.ndarray
+    others: np.ndarray
+    after: np.ndarray
+    finish: float
+    finished: np.ndarray
+    rest: np.ndarray
+
+
+class Window(NamedTuple):
+    """The part of the canvas that will be seen, px; the rest of it is there to blur in."""
+
+    left: int
+    bottom: int
+    right: int
+    top: int
+
+    def tiles(self, shape: tuple[int, int], reach: float) -> np.ndarray:
+        """The tiles at most `reach` px away from it, (rows, columns) bool."""
+        found = np.zeros(shape, bool)
+        low = [max(math.floor((side - reach) / TILE), 0) for side in (self.bottom, self.left)]
+        high = [math.ceil((side + reach) / TILE) for side in (self.top, self.right)]
+        found[low[0] : high[0], low[1] : high[1]] = True
+        return found
+
+
+def steps(layers: Sequence[Layer], content: Content, window: Window | None) -> list[Step]:
+    """Lay out the recursion over `layers`, farthest from the focus first.
+
+    Given a `window`, passes are confined to the tiles where something is that may be seen in it.
+    """
+    skip = window is not None
+    cells = [content.cells(layer) for layer in layers]
+    held = spread(layers, cells, skip)
+    region = np.ones_like(held[0])
+    done = np.zeros_like(held[0])
+    found = []
+    for number, (layer, sigma) in enumerate(zip(layers, cascade(layers), strict=True)):
+        reach = REACH * layer.sigma + (2 << layer.level)
+        region = region & window.tiles(region.shape, reach) if skip else region
+        own = (tiled(cells[number]) if skip else np.ones_like(region)) & region
+        others = held[number] & region & (~own | (layer.level == MOST_HALVINGS))
+        finished = np.zeros_like(region)
+        if number + 1 < len(layers) and layers[number + 1].level < layer.level:
+            near = np.zeros_like(cells[0])
+            for finer, where in zip(layers[number + 1 :], cells[number + 1 :], strict=True):
+                near |= grown(where, _cells(REACH * finer.sigma + (2 << layer.level)))
+            near = tiled(near)
+            finished = held[-1] & region & ~near & ~done
+            done = done | finished
+            region = region & grown(near, math.ceil((REACH * layers[number + 1].sigma + (2 << layer.level)) / TILE))
+        after = held[number + 1] & region
+        found.append(Step(layer, sigma, own, others, after, finishing(layer), finished, after & ~done))
+    return found
+
+
+def spread(layers: Sequence[Layer], cells: Sequence[np.ndarray], skip: bool = True) -> list[np.ndarray]:
+    """The tiles that hold something in the buffer before each layer joins and, last, after all of them."""
+    everywhere = np.ones_like(tiled(cells[0]))
+    found = [everywhere & False]
+    for number in range(1, len(layers) + 1):
+        if not skip or found[-1].all():
+            found.append(everywhere)
+            continue
+        rest = layers[number].sigma ** 2 if number < len(layers) else 0.0
+        rings: dict[int, np.ndarray] = {}
+        for layer, where in zip(layers[:number], cells, strict=False):
+            ring = _cells(REACH * math.sqrt(max(layer.sigma**2 - rest, 0.0)) + (2 << layer.level))
+            ring = ring if ring < 4 else -(-ring // 4) * 4
+            rings[ring] = rings[ring] | where if ring in rings else where
+        found.append(tiled(np.logical_or.reduce([grown(where, ring) for ring, where in rings.items()])))
+    if not skip:
+        found[0] = everywhere
+    return found
+
+
+def _cells(pixels: float) -> int:
+    return math.ceil(pixels / CELL)
+
+
+def tiled(cells: np.ndarray) -> np.ndarray:
+    """Cells to the tiles that they are in."""
+    return coarser(cells, TILE // CELL)

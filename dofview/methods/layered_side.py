@@ -1,0 +1,214 @@
+"""One side of the focus in `layered`: its layers blurred and blended into one buffer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dofview.gl.gaussian import convolve, kernel
+from dofview.gl.passes import ADD, OVER, UNDER
+from dofview.gl.pyramids import expand, level_size, reduce
+from dofview.gl.targets import Image
+from dofview.gl.tiles import Tiles, grown, upload
+from dofview.methods.layered_peels import NOTHING, Color, Peels
+from dofview.methods.layered_plan import MOST_HALVINGS, Layer
+from dofview.methods.layered_regions import Step, steps
+
+Weights = tuple[float, ...]
+
+MOST_TAPS = 32
+"""Weights of a filter that a joining layer applies on the way; a wider one is a pass of its own."""
+
+UNCHANGED: Weights = (1.0, 0.0)
+
+
+class Side:
+    """All layers in front of the focus, or all behind it, blurred and blended; `inspect` keeps every step's images."""
+
+    def __init__(self, peels: Peels, name: str, layers: Sequence[Layer], *, skip: bool, inspect: bool):
+        self.peels = peels
+        self.recipe = peels.recipe
+        self.gpu = peels.recipe.gpu
+        self.name = name
+        self.layers = layers
+        self.skip = skip
+        self.inspect = inspect
+        self.start = peels.start if name == "back" else NOTHING
+        self._cleared: set[Image] = set()
+
+    def cascaded(self) -> Image:
+        """Blur recursively: a layer joins the buffer, the buffer is blurred, the next one joins (GPU Pro 4, p. 204)."""
+        plan = steps(self.layers, self.peels.content, self.peels.window if self.skip else None)
+        tiles = self._upload(plan)
+        total = self._buffer()
+        across: Image | None = None
+        for number, (step, places) in enumerate(zip(plan, tiles, strict=True)):
+            level = step.layer.level
+            joined = self._image("joined", level, number)
+            if across is None:
+                self._join(step.layer, joined, places)
+            else:
+                self._carry_on(across, plan[number - 1], tiles[number - 1], step, places, number, joined)
+            if step.finished.any():
+                weights = kernel(step.finish)
+                across = self._convolved(joined, "finished across", level, weights, (1, 0), places.beyond)
+                blurred = self._convolved(across, "finished", level, weights, (0, 1), places.around, number)
+                self._enlarge(blurred, level, total, places.finished, places.around)
+            across = self._convolved(joined, "across", level, kernel(step.sigma), (1, 0), places.after)
+            if self.inspect:
+                self._join(step.layer, self._image("layer", level, number), places, alone=True)
+                self._convolved(across, "blurred", level, kernel(step.sigma), (0, 1), places.after, number + 1)
+        level, weights = plan[-1].layer.level, kernel(plan[-1].sigma)
+        if level == 0:
+            self._convolve(across, total, 0, weights, (0, 1), tiles[-1].rest)
+        else:
+            blurred = self._convolved(across, "blurred", level, weights, (0, 1), tiles[-1].after, len(plan))
+            self._enlarge(blurred, level, total, tiles[-1].rest, tiles[-1].after)
+        return total
+
+    def separate(self) -> Image:
+        """Blur each layer by itself with the whole of its σ, and blend them."""
+        total, start, self.start = self._buffer(), self.start, NOTHING
+        self.gpu.targets.framebuffer((total,)).clear(*start)
+        window = self.peels.window if self.skip else None
+        plan = [steps([layer], self.peels.content, window)[0] for layer in self.layers]
+        for number, (step, places) in enumerate(zip(plan, self._upload(plan), strict=True)):
+            layer = step.layer
+            self._cleared.clear()
+            alone = self._image("layer", layer.level, number)
+            self._join(layer, alone, places, alone=True)
+            across = self._convolved(alone, "across", layer.level, kernel(step.sigma), (1, 0), places.after)
+            blurred = self._convolved(across, "blurred", layer.level, kernel(step.sigma), (0, 1), places.after, number)
+            if layer.level > 0:
+                full = self._image("enlarged", 0)
+                self._enlarge(blurred, layer.level, full, places.after, places.after)
+                blurred = full
+            blend = UNDER if self.name == "front" else OVER
+            self.recipe.draw("pass/copy.frag", total, source=blurred, blend=blend, within=places.after)
+        return total
+
+    def _carry_on(
+        self, across: Image, before: Step, held: Places, step: Step, places: Places, number: int, joined: Image
+    ) -> None:
+        """Finish the filter of the step `before`, which is done along x, and let the layer of `step` join."""
+        former, level, weights = before.layer.level, step.layer.level, kernel(before.sigma)
+        if former == level and len(weights) <= MOST_TAPS:
+            self._convolve(across, joined, level, weights, (0, 1), places.others)
+            self._join(step.layer, joined, places, across=across, weights=weights)
+            return
+        blurred = self._convolved(across, "blurred", former, weights, (0, 1), held.after, number)
+        if former == level:
+            self._convolve(blurred, joined, level, UNCHANGED, (0, 1), places.others)
+            self._join(step.layer, joined, places, across=blurred)
+            return
+        if former > level + 1:
+            finer = self._image("enlarged", level + 1)
+            self._enlarge(blurred, former, finer, held.after, held.after, level + 1)
+            blurred = finer
+        self._enlarge(blurred, level + 1, joined, places.others, places.others, level)
+        self._join(step.layer, joined, places, coarse=blurred)
+
+    def _join(
+        self, layer: Layer, into: Image, places: Places, *, across: Image | None = None, coarse: Image | None = None,
+        weights: Weights = UNCHANGED, alone: bool = False,
+    ) -> None:  # fmt: skip
+        """Draw `layer` under or over what `across` holds, filtered along y by `weights`, or `coarse`, or the start.
+
+        At a quarter of the size `into` holds that already, and the layer comes to it by way of half the size.
+        """
+        added = layer.level == MOST_HALVINGS
+        target = self._image("added", 1) if added else into
+        buffered = (into if across else None) if added else across or coarse
+        defines: dict[str, object] = {"LEVEL": 2 ** min(layer.level, 1), "SOURCE": 0}
+        values: dict[str, object] = {"start": NOTHING if alone else self.start}
+        if buffered:
+            defines["SOURCE"] = 1 if across and not added else 2
+        if defines["SOURCE"] == 1:
+            defines["TAPS"] = len(weights)
+            values["weights"] = np.array(weights, np.float32).tobytes()
+        if self.name == "front" and not alone:
+            defines["FRONT"] = 1
+        if added:
+            defines["ADDED"] = 1
+        self.peels.draw(
+            "join.frag", target, layer, defines=defines, values=values, within=_at(places.own, min(layer.level, 1)),
+            clear=NOTHING if added else self._clear(into), **({"buffered": buffered} if buffered else {}),
+        )  # fmt: skip
+        if added:
+            with self.gpu.profile.section("layered/join"):
+                reduce(
+                    self.gpu, target, into, blend=ADD if self.name == "front" or alone else OVER,
+                    within=_at(places.near, MOST_HALVINGS), clear=self._clear(into),
+                )  # fmt: skip
+
+    def _convolved(
+        self, source: Image, what: str, level: int, weights: Weights, axis: tuple[int, int], tiles: Tiles | None,
+        number: int = 0,
+    ) -> Image:  # fmt: skip
+        into = self._image(what, level, number)
+        self._convolve(source, into, level, weights, axis, tiles)
+        return into
+
+    def _convolve(
+        self, source: Image, into: Image, level: int, weights: Weights, axis: tuple[int, int], tiles: Tiles | None
+    ) -> None:
+        with self.gpu.profile.section("layered/blur"):
+            convolve(self.gpu, source, into, weights, axis, within=_at(tiles, level), clear=self._clear(into))
+
+    def _enlarge(
+        self, coarse: Image, level: int, into: Image, tiles: Tiles | None, around: Tiles | None, to: int = 0
+    ) -> None:
+        """Bring `coarse` from `level` to the finer level `to`, doubling by doubling, last in `tiles` of `into`."""
+        with self.gpu.profile.section("layered/blur"):
+            for finer in reversed(range(to + 1, level)):
+                half = self._image("halfway", finer)
+                expand(self.gpu, coarse, half, within=_at(around, finer), clear=self._clear(half))
+                coarse = half
+            expand(self.gpu, coarse, into, within=_at(tiles, to), clear=self._clear(into))
+
+    def _clear(self, image: Image) -> Color | bool:
+        """What to clear `image` to before its first use. Later steps draw at least the same tiles of it again."""
+        if image in self._cleared:
+            return False
+        self._cleared.add(image)
+        return self.start
+
+    def _buffer(self) -> Image:
+        return self.recipe.image(f"{self.name} buffer")
+
+    def _image(self, what: str, level: int, number: int = 0) -> Image:
+        """An image of one level; with `inspect`, one of its own for every layer."""
+        name = f"{self.name} {number:02d} {what}" if self.inspect else f"{self.name} level {level} {what}"
+        return self.recipe.image(name, level_size(self.recipe.frame.size, level), linear=True)
+
+    def _upload(self, plan: Sequence[Step]) -> list[Places]:
+        masks = [mask for step in plan for mask in _masks(step)]
+        self.gpu.profile.count("layered tiles skipped", sum(int((~mask).sum()) for mask in masks))
+        tiles = upload(self.gpu.targets, f"layered/{self.name} tiles", masks, self.recipe.frame.size)
+        count = len(Places._fields)
+        return [Places(*tiles[start : start + count]) for start in range(0, len(tiles), count)]
+
+
+class Places(NamedTuple):
+    """Where the passes of a step are drawn, as `Step` has it; filters along y and changes of size read beyond that."""
+
+    own: Tiles | None
+    near: Tiles | None
+    others: Tiles | None
+    after: Tiles | None
+    finished: Tiles | None
+    around: Tiles | None
+    beyond: Tiles | None
+    rest: Tiles | None
+
+
+def _masks(step: Step) -> list[np.ndarray]:
+    """Those of `Places`."""
+    near, around = grown(step.own, 1), grown(step.finished, 1)
+    return [step.own, near, step.others, step.after, step.finished, around, grown(around, 1), step.rest]
+
+
+def _at(tiles: Tiles | None, level: int) -> Tiles | None:
+    return tiles.at(level) if tiles else None
