@@ -47,7 +47,7 @@ def save_parts(path: Path, parts: Mapping[str, np.ndarray], note: str = "") -> N
     write_whole(path, lambda part: _write_exr_parts(part, parts, note))
 
 
-def write_whole(path: Path, write: Callable[[Path], None]) -> None:
+def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` make a file beside `path`, then put it in its place; on any failure `path` is as it was."""
     target = _target(path)
     part: Path | None = None

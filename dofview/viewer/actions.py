@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, NamedTuple
 from imgui_bundle import imgui
 
 from dofview.methods import METHODS
-from dofview.viewer import files
 
 if TYPE_CHECKING:
     from dofview.viewer.app import App
@@ -45,18 +44,9 @@ def _next_method(app: App, step: int) -> None:
     app.settings = app.settings.with_(method=METHODS[index])
 
 
-def _ask_for_file(app: App) -> None:
-    if not files.has_dialog():
-        app.asking_for_path = True
-    elif spec := files.ask_for_scene():
-        app.open_any(spec)
-
-
 CTRL, SHIFT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_shift)
 
 ACTIONS: tuple[Action, ...] = (
-    Action("Open…", CTRL | int(imgui.Key.o), "Ctrl+O",
-           "Open a scene, a picture or whatever else can be dropped.", _ask_for_file, "File"),
     Action("Open path…", CTRL | SHIFT | int(imgui.Key.o), "Ctrl+Shift+O",
            "Type the path of a file to open, or a demo such as demo:rail.",
            lambda app: setattr(app, "asking_for_path", True), "File"),
@@ -91,7 +81,8 @@ def _pressed(action: Action) -> bool:
     key = imgui.Key(action.key & ~MODIFIERS)
     if not action.on_release:
         return imgui.is_key_pressed(key, action.repeat)
-    began = imgui.get_time() - imgui.internal.get_key_data(key).down_duration_prev
+    # How long the key was down is counted up to the frame before; times are sums of many floats.
+    began = imgui.get_time() - io.delta_time - imgui.internal.get_key_data(key).down_duration_prev - 1e-4
     return imgui.is_key_released(key) and all(time < began for time in io.mouse_clicked_time)
 
 

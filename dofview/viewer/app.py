@@ -9,9 +9,8 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from dofview.errors import DofviewError
 from dofview.gl.context import Gpu
@@ -25,6 +24,7 @@ from dofview.settings import ImageSettings, Settings
 from dofview.viewer import files, layout, viewport
 from dofview.viewer.actions import ACTIONS, Action, Gesture, menu_bar, run_keys
 from dofview.viewer.dialogs import path_dialog
+from dofview.viewer.loading import Loader
 from dofview.viewer.measurement import Measurement, add_views
 from dofview.viewer.store import Store
 from dofview.viewer.tool import Part, Placed, Tool
@@ -32,14 +32,6 @@ from dofview.viewer.tools import TOOLS
 
 MESSAGE_S = 8.0
 T = TypeVar("T", bound=Tool)
-
-
-class Loading(NamedTuple):
-    """A scene on its way."""
-
-    spec: str
-    scene: Future[tuple[Scene, Settings]]
-    keep_view: bool
 
 
 class App:
@@ -79,8 +71,7 @@ class App:
         self._message_until = 0.0
         self._rendered: object = None
         self._displayed: object = None
-        self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="load")
-        self._loading: Loading | None = None
+        self.loader = Loader(wake)
         self._rendered_well = settings
 
     @property
@@ -98,7 +89,7 @@ class App:
         """Whether another frame is needed though nobody touched anything."""
         accumulating = self.settings.method == "accumulation" and not self.accumulated.done
         outdated = self._rendered != self.picture_key
-        return accumulating or outdated or self._loading is not None or any(tool.busy(self) for tool in self.tools)
+        return accumulating or outdated or self.loader.ready or any(tool.busy(self) for tool in self.tools)
 
     def gui(self) -> None:
         """Draw the interface; call between imgui's new_frame and render."""
@@ -142,6 +133,8 @@ class App:
         lines = [(first, False), *self._figures]
         if self.settings.method == "accumulation":
             lines.append((self.accumulated.reference_text(), False))
+        if self.loader.spec:
+            lines.append((f"loading {self.loader.spec}, Escape stops", False))
         if self.message and time.monotonic() < self._message_until:
             lines.append((self.message, False))
         self._figures = []
@@ -160,8 +153,7 @@ class App:
 
     def open(self, spec: str, *, keep_view: bool = False) -> None:
         """Load a scene beside the window; the one shown stays until it is there."""
-        self._loading = Loading(spec, self._worker.submit(files.scene_and_view, spec, self.settings), keep_view)
-        self._loading.scene.add_done_callback(lambda _: self.wake())
+        self.loader.start(spec, self.settings, keep_view)
 
     def open_any(self, spec: str) -> None:
         """Open a demo by its name, or a file of any kind: the first tool that knows it takes it, else it is a scene."""
@@ -200,22 +192,20 @@ class App:
         """Release what was made here."""
         for tool in self.tools:
             tool.release()
-        self._worker.shutdown(wait=False, cancel_futures=True)
+        self.loader.release()
         self.pipeline.release()
 
     def _finish_loading(self) -> None:
-        if self._loading is None or not self._loading.scene.done():
+        if not self.loader.ready:
             return
-        spec, future, keep_view = self._loading
-        self._loading = None
         try:
-            scene, settings = future.result()
+            spec, scene, settings = self.loader.take()
             self.pipeline.load(scene)
         except DofviewError as error:
             self.report(str(error))
             return
         self.spec, self._rendered, self.generation = spec, None, self.generation + 1
-        if not keep_view:
+        if settings is not None:
             self.settings = self.home = self._rendered_well = settings.with_(image=self.settings.image)
         for tool in self.tools:
             tool.scene_changed(self)

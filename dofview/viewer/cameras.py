@@ -134,8 +134,8 @@ class Cameras(Tool):
                 imgui.same_line()
             if imgui.button(f"{name}##view", (5.5 * imgui.get_font_size(), 0.0)):
                 self._toward(direction)(app)
-        for number, camera in enumerate(app.scene.cameras):
-            if imgui.selectable(f"{plain(camera.name) or f'Camera {number}'}##filecamera{number}", False)[0]:
+        for number, other in enumerate(app.scene.cameras):
+            if imgui.selectable(f"{plain(other.name) or f'Camera {number}'}##filecamera{number}", False)[0]:
                 self.look_through(app, number)
 
     def look_through(self, app: App, number: int) -> None:

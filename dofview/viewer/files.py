@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+import time
 from datetime import datetime
 from pathlib import Path
 
@@ -16,21 +17,25 @@ from dofview.scene.load import load
 from dofview.scene.model import Scene
 from dofview.settings import Settings
 
+POLL_S = 0.05
+
 
 def has_dialog() -> bool:
     """Whether the desktop offers a file dialog; without one portable_file_dialogs answers like Cancel."""
     return not sys.platform.startswith("linux") or any(shutil.which(name) for name in ("zenity", "kdialog"))
 
 
-def ask_for_scene() -> str | None:
-    """Return a scene file the person chose, or None."""
-    if not has_dialog():
-        return None
+def ask() -> str | None:
+    """Return a file the person chose, or None. Waits, so it is called from a thread."""
     from imgui_bundle import portable_file_dialogs
 
-    chosen = portable_file_dialogs.open_file("Open a scene", "", ["Scenes", "*.glb *.gltf *.obj", "All files", "*"])
-    files = chosen.result()
-    return files[0] if files else None
+    kinds = ["Scenes", "*.glb *.gltf *.obj", "All files", "*"]
+    dialog = portable_file_dialogs.open_file("Open", "", kinds)
+    # Its own way of waiting would hold up every other thread.
+    while not dialog.ready(0):
+        time.sleep(POLL_S)
+    chosen = dialog.result()
+    return chosen[0] if chosen else None
 
 
 def scene_and_view(spec: str, settings: Settings) -> tuple[Scene, Settings]:

@@ -91,9 +91,10 @@ class Gaze(Tool):
         if not rows:
             return
         self.trace = Trace(rows)
+        text = self.trace.text()
         try:
             path = path or files.unused_name(".csv", "dofview-gaze")
-            write_whole(path, lambda part: part.write_text(self.trace.text(), encoding="utf-8"))
+            write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
             app.report(f"saved {path}: {len(rows)} steps")
         except DofviewError as error:
             app.report(str(error))
@@ -189,6 +190,7 @@ class Gaze(Tool):
 
     def _play(self, app: App) -> None:
         """One step, when it is time for it; a slow machine shows every step later."""
+        assert self.trace is not None
         if self._tick >= self.trace.ticks(self.settings):
             self.on = self._replaying = False
             app.report(f"replayed {self._tick} steps of gaze")

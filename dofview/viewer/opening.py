@@ -17,6 +17,7 @@ from dofview.render import environment
 from dofview.render.environment import Lighting
 from dofview.scene.load import DEMO
 from dofview.settings import Settings, apply_view, read_view, view_of
+from dofview.viewer import files
 from dofview.viewer.actions import CTRL, Action
 from dofview.viewer.store import Saved, Store
 from dofview.viewer.tool import Tool
@@ -36,13 +37,18 @@ class Opening(Tool):
     of a file, it gets."""
 
     def __init__(self) -> None:
-        self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="environment")
+        self._worker = ThreadPoolExecutor(max_workers=2, thread_name_prefix="opening")
+        self._asked: Future[str | None] | None = None
         self._environment: tuple[Lighting, Future[np.ndarray]] | None = None
         self._store: Store | None = None
         self._shown: tuple[str, Settings] | None = None
 
     def actions(self) -> tuple[Action, ...]:
         return (
+            Action("Open…", CTRL | int(imgui.Key.o), "Ctrl+O",
+                   "Open a scene, a picture or whatever else can be dropped.", self._ask, "File"),
+            Action("Stop loading", int(imgui.Key.escape), "Escape", "Forget the scene that is being read.",
+                   lambda app: app.loader.cancel(), "File"),
             Action("Reload", CTRL | int(imgui.Key.r), "Ctrl+R", "Read the scene's file again and keep the view.",
                    lambda app: app.open(app.spec, keep_view=True) if app.spec else None, "File"),
             Action("Forget recent files", 0, "", "Empty the list of recent files.",
@@ -87,6 +93,10 @@ class Opening(Tool):
         if self._shown is None:
             self._remember(app)
         self._shown = (app.spec, app.settings)
+        if self._asked is not None and self._asked.done():
+            chosen, self._asked = self._asked.result(), None
+            if chosen:
+                app.open_any(chosen)
         if self._environment is not None and self._environment[1].done():
             lighting, pixels = self._environment
             self._environment = None
@@ -97,7 +107,8 @@ class Opening(Tool):
                 app.report(str(error))
 
     def busy(self, app: App) -> bool:
-        return self._environment is not None and self._environment[1].done()
+        waiting = (self._asked, self._environment and self._environment[1])
+        return any(future.done() for future in waiting if future)
 
     def scene_changed(self, app: App) -> None:
         if self._shown is None or key_of(self._shown[0]) != key_of(app.spec):
@@ -110,6 +121,14 @@ class Opening(Tool):
     def release(self) -> None:
         self._worker.shutdown(wait=False, cancel_futures=True)
         self._keep()
+
+    def _ask(self, app: App) -> None:
+        """Ask by the desktop's dialog while the window lives on, or by path where there is none."""
+        if not files.has_dialog():
+            app.asking_for_path = True
+        elif self._asked is None:
+            self._asked = self._worker.submit(files.ask)
+            self._asked.add_done_callback(lambda _: app.wake())
 
     def _remember(self, app: App) -> None:
         if spec := key_of(app.spec):

@@ -9,6 +9,7 @@ import ctypes
 import threading
 import time
 import warnings
+from functools import partial
 from pathlib import Path
 
 # isort: off
@@ -57,7 +58,7 @@ def run(
     app = App(gpu, scene, settings, wake=wake, spec=spec, store=store)
     if restore:
         restore_view(app)
-    glfw.set_drop_callback(handle, lambda _, paths: [app.open_any(path) for path in paths])
+    glfw.set_drop_callback(handle, partial(_drop, app))
     try:
         _loop(window, app, woken)
     finally:
@@ -67,6 +68,11 @@ def run(
         imgui.backends.glfw_shutdown()
         imgui.destroy_context()
         window.destroy()
+
+
+def _drop(app: App, _: object, paths: list[str]) -> None:
+    for path in paths:
+        app.open_any(path)
 
 
 def _create(size: tuple[int, int], title: str) -> Window:

@@ -47,6 +47,7 @@ def use(context: Context, app: App, host: Host) -> None:
     context.yield_(3)
     by_click(context, app)
     by_wheel_and_keys(context, app)
+    lenses(context, app)
     band(context, app, host)
     by_gaze(context, app)
     replay(context, app, host)
@@ -99,6 +100,32 @@ def by_wheel_and_keys(context: Context, app: App) -> None:
     assert app.settings.lens.radius > radius
     press(context, "minus")
     assert abs(app.settings.lens.radius - radius) < 1e-9
+
+
+def lenses(context: Context, app: App) -> None:
+    """The eye of the paper, whose screen decides the angle, and a camera."""
+    context.set_ref("settings")
+    context.item_close("Lens")
+    context.item_close("Method")
+    context.item_open("**/Real lenses")
+    context.item_click("**/Human eye before a screen")
+    context.yield_(2)
+    assert abs(app.settings.lens.radius - 0.5 * 4e-3 * 17.0 / 24.0) < 1e-9
+    height = app.settings.image.size[1]
+    assert abs(focal_px(height, app.settings.camera.vfov_deg) - 0.32 * 3000.0) < 1e-6
+    context.item_check("**/keep view##keep_view")
+    angle = app.settings.camera.vfov_deg
+    context.item_click("**/Portrait, 85 mm f\\/1.4")
+    context.yield_(2)
+    assert app.settings.camera.vfov_deg == angle and abs(app.settings.lens.radius - 0.085 / 2.8) < 1e-9
+    context.item_uncheck("**/keep view##keep_view")
+    context.item_close("**/Real lenses")
+    context.item_open("Method")
+    context.item_open("Lens")
+    context.set_ref("")
+    app.settings = app.settings.with_(camera=CAMERA)
+    context.yield_(2)
+    press(context, "period")
 
 
 def band(context: Context, app: App, host: Host) -> None:

@@ -36,6 +36,7 @@ def use(context: Context, app: App, host: Host) -> None:
     dropped(context, app)
     views_as_text(context, app)
     scenes(context, app)
+    by_dialog(context, app)
     recent(context, app)
 
 
@@ -137,6 +138,29 @@ def scenes(context: Context, app: App) -> None:
     one.write_bytes(b"glTF no more")
     until(context, lambda: "one.glb" in app.message and "triangles" not in app.message, "a broken file is named")
     assert app.scene.bounds[1].max() > 4.0, "and the last good scene stays"
+
+
+def by_dialog(context: Context, app: App) -> None:
+    """A desktop's dialog that answers after a while; meanwhile frames are drawn."""
+    program = FOLDER / "zenity"
+    program.write_text(f"#!/bin/sh\nsleep 1\necho {FOLDER / 'two.glb'}\n")
+    program.chmod(0o755)
+    path = os.environ["PATH"]
+    os.environ["PATH"] = f"{FOLDER}{os.pathsep}{path}"
+    press(context, "o", "ctrl")
+    began, frames = time.monotonic(), 0
+    while not app.spec.endswith("two.glb") and time.monotonic() < began + 30.0:
+        context.yield_()
+        frames += 1
+    os.environ["PATH"] = path
+    assert app.spec.endswith("two.glb") and frames > 5
+    app.open_any(str(FOLDER / "one.glb"))
+    app.loader.cancel()
+    context.yield_(5)
+    assert app.spec.endswith("two.glb") and not app.loader.spec
+    (FOLDER / "one.glb").write_bytes(triangle(1.0))
+    app.open_any(str(FOLDER / "one.glb"))
+    until(context, lambda: app.spec.endswith("one.glb"), "and back")
 
 
 def recent(context: Context, app: App) -> None:
