@@ -24,7 +24,7 @@ from dofview.settings import ImageSettings, Settings
 
 STAGES = {".vert": "vert", ".frag": "frag", ".geom": "geom"}
 FILES = sorted(p.relative_to(SHADERS).as_posix() for p in SHADERS.rglob("*") if p.suffix in STAGES)
-LENS = Lens(radius=0.25, focus_distance=5.0)
+LENS = Lens(radius=1.0, focus_distance=5.0)
 
 pytestmark = pytest.mark.skipif(shutil.which("glslangValidator") is None, reason="needs glslangValidator")
 
@@ -61,6 +61,9 @@ def compiled(session_gpu: Gpu) -> dict[tuple[str, str], str]:
                 if fresh.version_code >= method(name).REQUIRES_GL:
                     result = pipeline.render(settings)
         pipeline.compare(result, settings)
+        # What is left to a GPU to decide, software decides for itself.
+        patch.setattr(fresh, "software", False)
+        pipeline.render(Settings(method="splatting", lens=LENS, image=ImageSettings(size=(48, 36))))
         pipeline.render(settings.with_(light=Lighting(environment=STUDIO)))
         show(fresh, result.image, Display(), "shown")
         for analysis in Analysis:

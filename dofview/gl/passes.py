@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 
 import moderngl
 from pydantic import BaseModel
@@ -58,13 +59,17 @@ def draw(
     blocks: Blocks | None = None, values: Mapping[str, object] | None = None, defines: Defines | None = None,
     blend: tuple | None = None, clear: bool | tuple[float, ...] = False,
     viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None,
-    vertex: str = "pass/fullscreen.vert", geometry: str | None = None,
+    vertex: str = "pass/fullscreen.vert", geometry: str | None = None, sprites: int | None = None,
+    when: moderngl.Query | None = None,
 ) -> None:  # fmt: skip
     """Run the fragment shader `shader` over every pixel of `into` (one image, or several of one size), or over the
     part of them that `viewport` (left, bottom, width, height) or `within` name; `clear`, to 0 or to a colour, is of the
     whole.
 
-    `geometry` names a geometry shader that chooses the layer when `into` are arrays (pass/to_layer.geom).
+    `geometry` names a geometry shader that chooses the layer when `into` are arrays (pass/to_layer.geom). `sprites`
+    draws that many pairs of triangles instead, six corners each, which the shader `vertex` places by gl_VertexID
+    (instances of four corners cost several times as much). `when` leaves it to the GPU not to draw if that query
+    passed no sample.
     """
     images = (into,) if isinstance(into, Image) else tuple(into)
     blocks = blocks or {}
@@ -75,6 +80,8 @@ def draw(
         extent = (width << within.level, height << within.level)
         textures = {**(textures or {}), "tile_list": within.image}
         values = {**(values or {}), "tile_row": within.row, "tile_extent": extent}
+    elif sprites is not None:
+        vertices = 6 * sprites
     stages = (vertex, geometry, shader) if geometry else (vertex, shader)
     program = gpu.shaders.program(*stages, defines=defines, blocks=block_texts(blocks))
     framebuffer = gpu.targets.framebuffer(images)
@@ -92,6 +99,7 @@ def draw(
     bind(gpu, program, textures or {}, blocks, values or {})
     if 0 not in program.arrays:
         program.arrays[0] = ctx.vertex_array(program.gl, [])
-    program.arrays[0].render(moderngl.TRIANGLES, vertices=vertices)
+    with when.crender if when else nullcontext():
+        program.arrays[0].render(moderngl.TRIANGLES, vertices=vertices)
     gpu.profile.count("passes")
-    gpu.profile.count("fragments", fragments)
+    gpu.profile.count("sprites" if sprites else "fragments", sprites or fragments)

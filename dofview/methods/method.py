@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
+from moderngl import Query
 from pydantic import BaseModel, ConfigDict
 
 from dofview.gl.passes import draw
@@ -66,15 +67,17 @@ class Recipe:
         self, shader: str, into: Image | Sequence[Image], *, values: Mapping[str, object] | None = None,
         defines: Mapping[str, object] | None = None, blocks: Mapping[str, BaseModel] | None = None,
         blend: tuple | None = None, clear: bool | tuple[float, ...] = False,
-        viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None,
-        images: Mapping[str, Image] | None = None, **textures: Image,
+        viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None, sprites: int | None = None,
+        when: Query | None = None, images: Mapping[str, Image] | None = None, **textures: Image,
     ) -> None:  # fmt: skip
         """Run `shader` of the method's folder (or of shaders/ when it has a folder of its own) into `into`. It reads
-        `textures`, and `images` where their names are not known beforehand."""
+        `textures`, and `images` where their names are not known beforehand. `sprites` many are placed by the vertex
+        shader of the same name; the rest is as in `gl.passes.draw`."""
         path = shader if "/" in shader else f"methods/{self.name}/{shader}"
+        vertex = "pass/fullscreen.vert" if sprites is None else path.removesuffix(".frag") + ".vert"
         with self.gpu.profile.section(f"{self.name}/{path.rsplit('/', 1)[-1].removesuffix('.frag')}"):
             draw(
                 self.gpu, path, into, textures={**textures, **(images or {})},
                 blocks={**self.blocks, **(blocks or {})}, values=values, defines=defines, blend=blend, clear=clear,
-                viewport=viewport, within=within,
+                viewport=viewport, within=within, vertex=vertex, sprites=sprites, when=when,
             )  # fmt: skip

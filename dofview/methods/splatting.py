@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+import numpy as np
 from pydantic import Field
 
 from dofview.gl.targets import Image
 from dofview.methods.method import Params as BaseParams
 from dofview.methods.method import Recipe
-from dofview.render.frame import Frame, Surfaces
-from dofview.render.raster import depth_range, draw_scene
+from dofview.methods.splatting_points import Points, Reduction, draw_highlights, make_points, search_map
+from dofview.render.frame import Frame
 
 TITLE = "Point splatting on per-pixel layers"
 CITATION = (
@@ -24,10 +25,12 @@ CITATION = (
 REQUIRES_GL = 330
 GUARD_BAND = True
 
-TILE = 16
-MOST_RADIUS = 256.0
-K_N_STEPS, K_N_COUNT = 16, 256
-POINTS = {"MOST_RADIUS": MOST_RADIUS, "K_N_STEPS": float(K_N_STEPS), "K_N_COUNT": K_N_COUNT, "TILE": TILE}
+
+class Computation(StrEnum):
+    """How the sprites are summed; the picture is the same."""
+
+    GATHER = "gather"
+    SCATTER = "scatter"
 
 
 class HiddenTest(StrEnum):
@@ -38,9 +41,10 @@ class HiddenTest(StrEnum):
 
 
 class Params(BaseParams):
-    """δ, the tests of the hidden image, highlights, and what may be skipped.
+    """δ, the tests of the hidden image, highlights, and what makes it fast.
 
-    The paper's own: delta=0.4, hidden_test=depth, epsilon=0.05, edge_depth=0.01, fill=False.
+    The paper's own: delta=0.4, hidden_test=depth, epsilon=0.05, edge_depth=0.01, fill=False, reduction=paper,
+    computation=scatter.
     """
 
     delta: float = Field(
@@ -79,72 +83,96 @@ class Params(BaseParams):
     highlight_gain: float = Field(
         default=2.0, ge=1.0, le=64.0, description="Gain of the extension at white.", json_schema_extra={"symbol": "γ"}
     )
+    reduction: Reduction = Field(
+        default=Reduction.LEVELS,
+        description="Merge blurred points: none; paper: 2×2 where nothing is hidden; levels: up to 8×8, by blur.",
+    )  # fmt: skip
+    reduced_from: float = Field(
+        default=6.0, ge=1.0, le=64.0, description="CoC diameter from which points are merged; the paper: 4.",
+        json_schema_extra={"unit": "px"},
+    )  # fmt: skip
+    computation: Computation = Field(
+        default=Computation.GATHER, description="gather: each pixel looks for its sprites; scatter: sprites are drawn."
+    )
     skip: bool = Field(default=True, description="Leave out work that cannot change the picture.")
-    debug: bool = Field(default=False, description="Also keep the three layers as images.")
+    debug: bool = Field(
+        default=False, description="Keep the three layers as images, and count tiles that were skipped."
+    )
 
 
 def render(frame: Frame, params: Params) -> Image:
     """Return the picture on the canvas; the guard band itself is not blurred."""
     recipe = Recipe(frame, "splatting", params)
-    hidden = _hidden_image(recipe, params)
-    near, far = frame.coc_range()
-    widest = min(max(-near, far, frame.coc.at_infinity if hidden else 0.0), MOST_RADIUS)
-    flags = {**POINTS, "SKIP": params.skip, **({"HIDDEN": 1} if hidden else {})}
-
-    visible_points, hidden_points = recipe.image("points"), recipe.image("hidden points")
-    surfaces = frame.pinhole()
-    textures = {"color": surfaces.color, "inverse_depth": surfaces.inverse_depth, "k_n": _k_n(recipe, flags)}
-    if hidden:
-        textures |= {
-            "hidden_color": hidden.color, "hidden_inverse_depth": hidden.inverse_depth,
-            "hidden_limit": recipe.image("hidden limit", components=1),
-        }  # fmt: skip
-    recipe.draw(
-        "points.frag", (visible_points, hidden_points), defines=flags, **textures,
-        values={"background": frame.background} if hidden else {},
-    )  # fmt: skip
-    points = {"visible_points": visible_points, "hidden_points": hidden_points}
-
-    # One map at a sixteenth of the size bounds every pixel's search.
-    tiles = (-(-frame.size[0] // TILE), -(-frame.size[1] // TILE))
-    largest, reach = recipe.image("largest", tiles), recipe.image("reach", tiles)
-    recipe.draw("tiles.frag", largest, defines=flags, **points)
-    recipe.draw("reach.frag", reach, defines=flags, largest=largest, values={"farthest": int(widest) // TILE + 1})
-
+    points = make_points(recipe, params)
     picture = recipe.image("picture")
-    layers = [recipe.image(f"L{i}") for i in range(3)] if params.debug else []
-    if params.debug:
-        flags["DEBUG"] = 1
-    recipe.draw("gather.frag", [picture, *layers], defines=flags, reach=reach, values={"guard": frame.guard}, **points)
+    if params.computation is Computation.SCATTER:
+        _scatter(recipe, points, picture)
+    else:
+        _gather(recipe, points, picture, params)
     return picture
 
 
-def _hidden_image(recipe: Recipe, params: Params) -> Surfaces | None:
-    """The nearest surfaces that pass the three tests of section 3.2; None when nothing is in front of the focus."""
+def _gather(recipe: Recipe, points: Points, picture: Image, params: Params) -> None:
     frame = recipe.frame
-    if not params.hidden:
-        return None
-    if params.skip and frame.coc_range()[0] > -0.5:
-        recipe.gpu.profile.count("splatting hidden passes skipped")
-        return None
-    surfaces = frame.pinhole()
-    limit = recipe.image("hidden limit", components=1)
+    reach, largest = search_map(recipe, points, params.skip)
+    flags, textures = dict(points.flags), {"points": points.visible[0][0], "reach": reach, **points.sprite.textures}
+    for level, hidden in enumerate(points.hidden):
+        textures[f"hidden_points_{level}" if level else "hidden_points"] = hidden
+    for level in range(1, points.levels + 1):
+        textures[f"points_{level}"], textures[f"far_points_{level}"] = points.visible[level]
+
+    if points.sprites is not None:
+        # Highlights keep the rims of their sprites, which merging would soften.
+        layers = [recipe.image(f"sprites {name}") for name in ("with", "behind", "in front")]
+        if draw_highlights(recipe, points, largest, layers):
+            textures |= {"sprites_with": layers[0], "sprites_behind": layers[1], "sprites_in_front": layers[2]}
+            flags["SPRITES"] = 1
+    into = [picture]
+    if params.debug:
+        into += [recipe.image(f"L{i}") for i in range(3)]
+        flags["DEBUG"] = 1
+    if params.skip and not _has_front(frame.coc_range(), params.delta):
+        flags["NO_FRONT"] = 1
+        recipe.gpu.profile.count("splatting front layers skipped")
+    if params.debug or recipe.gpu.profile.timing:
+        _count_tiles(recipe, reach, points.levels)
     recipe.draw(
-        "hidden_limit.frag", limit, inverse_depth=surfaces.inverse_depth,
-        values={"depth_range": depth_range(frame.scene, frame.camera)},
+        "gather.frag", into, defines=flags, values={"merged_from": points.merged_from, **points.sprite.values},
+        viewport=(frame.guard, frame.guard, *frame.inner_size), **textures,
     )  # fmt: skip
-    hidden = Surfaces(recipe.image("hidden"), recipe.image("hidden inverse depth", components=1))
-    with recipe.gpu.profile.section("splatting/hidden"):
-        # Behind the limit is the same question that depth peeling asks of the surface before.
-        draw_scene(
-            recipe.gpu, frame.scene, frame.projection(), hidden, lights=frame.lights,
-            reject="render/reject_peel.glsl", textures={"peeled_inverse_depth": limit},
-        )  # fmt: skip
-    return hidden
 
 
-def _k_n(recipe: Recipe, flags: dict[str, object]) -> Image:
-    table = recipe.image("k_n", (K_N_COUNT, 1), components=1)
-    if not recipe.frame.cache.holds("disc", table):
-        recipe.draw("k_n.frag", table, defines=flags)
-    return table
+def _scatter(recipe: Recipe, points: Points, picture: Image) -> None:
+    """The paper's way: sprites by blending, V to L0–L2, H to M1 and M2 (section 3.4), then composition."""
+    l1, l2, l0 = (recipe.image(f"L{i}") for i in (1, 2, 0))
+    textures = {"layer_0": l0, "layer_1": l1, "layer_2": l2}
+    clear = True
+    for level, images in enumerate(points.visible):
+        for image in images:
+            points.draw_sprites(recipe, image, level, (l1, l2, l0), clear=clear)
+            clear = False
+    if points.sprites is not None:
+        points.draw_sprites(recipe, points.sprites, 0, (l1, l2, l0), clear=False, last=True)
+    if points.hidden:
+        m1, m2 = recipe.image("M1"), recipe.image("M2")
+        textures |= {"hidden_layer_1": m1, "hidden_layer_2": m2}
+        for level, image in enumerate(points.hidden):
+            points.draw_sprites(recipe, image, level, (m1, m2), clear=level == 0)
+    recipe.draw("compose.frag", picture, defines=points.flags, **textures)
+
+
+def _has_front(coc_range: tuple[float, float], delta: float) -> bool:
+    """Whether any point can lie on layer 0 of any pixel: only then is something blurred that much less than another."""
+    near, far = coc_range
+    reached = [c for c in (near, far, 0.5 / max(delta, 1e-6)) if near <= c <= far]
+    # CoC radii are kept in steps of 1/64 px.
+    return near - 1.0 / 32.0 < max(c - max(delta * abs(c), 0.5) for c in reached)
+
+
+def _count_tiles(recipe: Recipe, reach: Image, levels: int) -> None:
+    """Count what the search map saves; it is read back for that, so only when someone looks."""
+    parts = np.split(reach.pixels()[::-1, :, :3], levels + 1)
+    profile = recipe.gpu.profile
+    profile.count("splatting tiles", parts[0].shape[0] * parts[0].shape[1])
+    profile.count("splatting tiles copied", int((np.max(parts, axis=(0, 3)) < 0.0).sum()))
+    profile.count("splatting tiles without hidden points", int((np.max(parts, axis=0)[..., 1] < 0.0).sum()))

@@ -6,10 +6,31 @@
 #include "methods/splatting/sprite.glsl"
 #include "methods/splatting/layers.glsl"
 
-uniform sampler2D visible_points;
-uniform sampler2D hidden_points;
+uniform sampler2D points;
 uniform sampler2D reach;
-uniform int guard;
+#ifdef HIDDEN
+uniform sampler2D hidden_points;
+#endif
+#ifdef SPRITES
+uniform sampler2D sprites_in_front;
+uniform sampler2D sprites_with;
+uniform sampler2D sprites_behind;
+#endif
+#if LEVELS > 0
+uniform sampler2D points_1;
+uniform sampler2D far_points_1;
+uniform sampler2D hidden_points_1;
+#endif
+#if LEVELS > 1
+uniform sampler2D points_2;
+uniform sampler2D far_points_2;
+uniform sampler2D hidden_points_2;
+#endif
+#if LEVELS > 2
+uniform sampler2D points_3;
+uniform sampler2D far_points_3;
+uniform sampler2D hidden_points_3;
+#endif
 
 layout(location = 0) out vec4 color;
 #ifdef DEBUG
@@ -18,44 +39,62 @@ layout(location = 2) out vec4 layer_1;
 layout(location = 3) out vec4 layer_2;
 #endif
 
-void gather(sampler2D points, float radius, bool hidden, float coc_here, float tolerance, inout Layers layers)
+#include "methods/splatting/collect.glsl"
+
+vec3 look(int level)
 {
-    ivec2 pixel = ivec2(gl_FragCoord.xy), last = textureSize(points, 0) - 1;
-    float bound = radius + 0.71;
-    int rows = int(ceil(bound));
-    for (int y = max(pixel.y - rows, 0); y <= min(pixel.y + rows, last.y); ++y) {
-        float dy = float(y - pixel.y);
-        int columns = int(ceil(sqrt(max(bound * bound - dy * dy, 0.0))));
-        for (int x = max(pixel.x - columns, 0); x <= min(pixel.x + columns, last.x); ++x) {
-            vec4 point = texelFetch(points, ivec2(x, y), 0);
-            float coc = point_coc(point);
-            vec4 light = vec4(point.rgb, 1.0) * alpha(vec2(pixel - ivec2(x, y)), coc, point_share(point));
-            float layer = layer_of(coc, coc_here, tolerance);
-            if (hidden) layer = max(layer, 0.0);
-            layers.front += layer < 0.0 ? light : vec4(0.0);
-            layers.same += layer == 0.0 ? light : vec4(0.0);
-            layers.behind += layer > 0.0 ? light : vec4(0.0);
-        }
-    }
+    int rows = textureSize(reach, 0).y / (LEVELS + 1);
+    return texelFetch(reach, ivec2(gl_FragCoord.xy) / TILE + ivec2(0, level * rows), 0).xyz;
+}
+
+void gather_level(sampler2D near_points, sampler2D far_points, int level, Here here, inout Layers layers)
+{
+    vec3 radius = look(level);
+    gather(near_points, level, radius.x, false, here, layers);
+    gather(far_points, level, radius.z, false, here, layers);
 }
 
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 here = texelFetch(visible_points, pixel, 0);
-    vec3 look = texelFetch(reach, pixel / TILE, 0).xyz;
-    bool inside = all(greaterThanEqual(pixel, ivec2(guard))) &&
-        all(lessThan(pixel, textureSize(visible_points, 0) - guard));
-    if (!inside) look = vec3(-1.0);
-    float coc = point_coc(here), tolerance = layer_tolerance(coc);
-    Layers layers = Layers(vec4(0.0), vec4(0.0), vec4(0.0));
-    if (look.x >= 0.0) gather(visible_points, look.x, false, coc, tolerance, layers);
-#ifdef HIDDEN
-    Layers hidden = Layers(vec4(0.0), vec4(0.0), vec4(0.0));
-    if (look.y >= 0.0) gather(hidden_points, look.y, true, coc, tolerance, hidden);
-    add_hidden(layers, hidden);
+    vec4 own = texelFetch(points, pixel, 0);
+    Here here = Here(point_coc(own), layer_tolerance(point_coc(own)));
+    vec3 radius = look(0);
+    Layers layers = Layers(vec4(0.0), vec4(0.0), vec4(0.0)), hidden = layers;
+    // Where nothing of this level reaches, a pixel of this level is in focus, and opaque.
+    if (radius.x < 0.0 && is_point(own) && (LEVELS == 0 || abs(here.coc) < merged_from))
+        layers.same = vec4(own.rgb, 1.0);
+#ifdef SPRITES
+    if (radius.z >= 0.0) {
+        layers.front += texelFetch(sprites_in_front, pixel, 0);
+        layers.same += texelFetch(sprites_with, pixel, 0);
+        layers.behind += texelFetch(sprites_behind, pixel, 0);
+    }
 #endif
-    color = look.x >= 0.0 ? compose(layers) : vec4(here.rgb, 1.0);
+    gather(points, 0, radius.x, false, here, layers);
+#if LEVELS > 0
+    gather_level(points_1, far_points_1, 1, here, layers);
+#endif
+#if LEVELS > 1
+    gather_level(points_2, far_points_2, 2, here, layers);
+#endif
+#if LEVELS > 2
+    gather_level(points_3, far_points_3, 3, here, layers);
+#endif
+#ifdef HIDDEN
+    gather(hidden_points, 0, radius.y, true, here, hidden);
+#if LEVELS > 0 && !defined BY_PAPER
+    gather(hidden_points_1, 1, look(1).y, true, here, hidden);
+#endif
+#if LEVELS > 1
+    gather(hidden_points_2, 2, look(2).y, true, here, hidden);
+#endif
+#if LEVELS > 2
+    gather(hidden_points_3, 3, look(3).y, true, here, hidden);
+#endif
+#endif
+    add_hidden(layers, hidden);
+    color = compose(layers);
 #ifdef DEBUG
     layer_0 = layers.front;
     layer_1 = layers.same;

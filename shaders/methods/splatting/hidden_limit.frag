@@ -7,30 +7,29 @@
 //      is blurred, and what is behind it is never seen.
 //   1. The fragment must lie behind the visible surface by more than a margin, so that the rest of the same object stays
 //      out: `gap` of the visible CoC, or the paper's epsilon of the scene's depth.
-
-
-
-
 #include <Params>
 #include "include/lens.glsl"
 
 uniform sampler2D inverse_depth;
 uniform vec2 depth_range;  // nearest and farthest depth of the scene, scene units
 
-layout(location = 0) out float limit;
+// Red as said; green the same for the smaller range within which the paper leaves out merged points (section 5).
+layout(location = 0) out vec2 limit;
 
 const float LEAST = 1.0;  // px of CoC radius that any two surfaces must differ by
-const float GOLDEN_ANGLE = 2.39996323;
-const int SPIRAL_TAPS = 24;
-const vec2 POISSON_DISC[12] = vec2[](
-    vec2(-0.313, 0.137), vec2(0.665, -0.575), vec2(0.665, 0.430), vec2(-0.584, -0.690), vec2(-0.382, 0.890),
-    vec2(-0.984, -0.110), vec2(-0.060, -0.378), vec2(0.099, -0.963), vec2(0.166, 0.790), vec2(0.997, -0.076),
-    vec2(0.400, -0.125), vec2(-0.799, 0.542));
+const int TAPS = 12;
+const mat2 GOLDEN_TURN = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);  // by the golden angle
 
 float inverse_depth_at(vec2 position)
 {
     return texelFetch(inverse_depth, clamp(ivec2(floor(position)), ivec2(0), textureSize(inverse_depth, 0) - 1), 0).r;
 }
+
+#ifdef BY_DEPTH
+const vec2 POISSON_DISC[TAPS] = vec2[](
+    vec2(-0.313, 0.137), vec2(0.665, -0.575), vec2(0.665, 0.430), vec2(-0.584, -0.690), vec2(-0.382, 0.890),
+    vec2(-0.984, -0.110), vec2(-0.060, -0.378), vec2(0.099, -0.963), vec2(0.166, 0.790), vec2(0.997, -0.076),
+    vec2(0.400, -0.125), vec2(-0.799, 0.542));
 
 // Depth scaled to 0 at the nearest and 1 at the farthest of the scene, as the paper's thresholds have it.
 float normalised_depth(float inverse)
@@ -40,36 +39,49 @@ float normalised_depth(float inverse)
 }
 
 // Eq 4 as printed: the mean rise of normalised depth over Poisson points within the CoC.
-bool occludes_by_mean(float inverse, float coc)
+bool occludes(float inverse, float coc, float range)
 {
     float sum = 0.0;
-    for (int i = 0; i < 12; ++i)
-        sum += normalised_depth(inverse_depth_at(gl_FragCoord.xy + POISSON_DISC[i] * abs(coc)));
-    return sum / 12.0 - normalised_depth(inverse) >= params.edge_depth;
+    for (int i = 0; i < TAPS; ++i) sum += normalised_depth(inverse_depth_at(gl_FragCoord.xy + POISSON_DISC[i] * range));
+    return sum / float(TAPS) - normalised_depth(inverse) >= params.edge_depth;
 }
 
-// Any edge within reach, in CoC space: a thin gap that few points fall into counts as much as a wide one.
-bool occludes_by_edge(float coc)
+// The inverse depth that lies behind the visible one by the margin; next to 0 where that is behind the scene.
+float behind(float inverse, float coc)
 {
-    float reach = abs(coc) + 1.5, highest = coc;
-    for (int i = 0; i < SPIRAL_TAPS; ++i) {
-        float radius = reach * sqrt((float(i) + 0.5) / float(SPIRAL_TAPS)), angle = float(i) * GOLDEN_ANGLE;
-        vec2 position = gl_FragCoord.xy + radius * vec2(cos(angle), sin(angle));
+    float depth = 1.0 / inverse + params.epsilon * (depth_range.y - depth_range.x);
+    return depth < depth_range.y ? 1.0 / depth : 1e-20;
+}
+#else
+// Any edge within reach, in CoC space: a thin gap that few points fall into counts as much as a wide one.
+bool occludes(float inverse, float coc, float range)
+{
+    float highest = coc;
+    vec2 direction = vec2(1.0, 0.0);
+    // A group of pixels none of which enters the loop costs nothing; a branch around it might not save that.
+    int taps = coc > -0.5 ? 0 : TAPS;
+    for (int i = 0; i < taps; ++i) {
+        vec2 position = gl_FragCoord.xy + direction * (range + 1.5) * sqrt((float(i) + 0.5) / float(TAPS));
         highest = max(highest, coc_radius(inverse_depth_at(position)));
+        direction = GOLDEN_TURN * direction;
     }
     return highest - coc > max(params.edge * -coc, LEAST);
 }
+
+float behind(float inverse, float coc)
+{
+    return max(inverse - max(params.gap * -coc, LEAST) / lens.scale, 0.0);
+}
+#endif
 
 void main()
 {
     float inverse = texelFetch(inverse_depth, ivec2(gl_FragCoord.xy), 0).r;
     float coc = coc_radius(inverse);
-    limit = 0.0;
+    limit = vec2(0.0);
     if (coc > -0.5) return;
-    if (params.hidden_test == HIDDEN_TEST_COC)
-        limit = occludes_by_edge(coc) ? max(inverse - max(params.gap * -coc, LEAST) / lens.scale, 0.0) : 0.0;
-    else if (occludes_by_mean(inverse, coc)) {
-        float depth = 1.0 / inverse + params.epsilon * (depth_range.y - depth_range.x);
-        limit = depth < depth_range.y ? 1.0 / depth : 1e-20;
-    }
+    if (occludes(inverse, coc, -coc)) limit.x = behind(inverse, coc);
+#ifdef BY_PAPER
+    if (occludes(inverse, coc, -0.95 * coc)) limit.y = limit.x;
+#endif
 }

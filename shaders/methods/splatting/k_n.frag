@@ -7,10 +7,10 @@ out float k;
 
 void main()
 {
-    float radius = sprite_radius((gl_FragCoord.x - 0.5) / K_N_STEPS);
-    int reach = int(ceil(radius * EXTENT + 1.0));
+    float radius = sprite_radius((gl_FragCoord.x - 0.5) / K_N_STEPS, 0);
+    int reach = int(ceil(radius * extent + 1.0));
     float sum = 0.0;
     for (int y = -reach; y <= reach; ++y)
-        for (int x = -reach; x <= reach; ++x) sum += max(sprite(vec2(x, y), radius), 0.0);
+        for (int x = -reach; x <= reach; ++x) sum += sprite(vec2(x, y), radius, 0);
     k = 4.0 * radius * radius / sum;
 }

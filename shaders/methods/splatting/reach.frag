@@ -1,7 +1,8 @@
-// How far a pixel of each tile must look for points whose sprites reach it: x among the visible ones, y among the hidden
-// ones, px; -1 where it need not look at all. z is 1 where the tile is its own picture.
+// How far the pixels of a tile must look for points of each level whose sprites reach them, px: x among the visible ones,
+// y among the hidden ones, z among the second ones; -1 where they need not look at all.
 //
-// In a tile in focus the pixels are opaque by themselves, so only what is in front of them can show.
+// In a tile in focus every pixel is opaque by itself, so only what is in front can show; where nothing is, the tile is
+// copied. The map has the tiles of one level after the other, from the bottom.
 #include "methods/splatting/point.glsl"
 #include "methods/splatting/sprite.glsl"
 
@@ -10,23 +11,35 @@ uniform int farthest;  // tiles
 
 out vec4 reach;
 
+bool is_sharp(ivec2 tile, int rows)
+{
+    vec4 own = texelFetch(largest, tile, 0);
+    bool sharp = SKIP == 1 && max(own.x, max(own.y, own.w)) < sharp_radius();
+    for (int level = 1; level <= LEVELS; ++level) {
+        own = texelFetch(largest, tile + ivec2(0, level * rows), 0);
+        sharp = sharp && max(own.x, own.y) < 0.0;
+    }
+    return sharp;
+}
+
 void main()
 {
-    ivec2 tile = ivec2(gl_FragCoord.xy), size = textureSize(largest, 0);
-    vec4 own = texelFetch(largest, tile, 0);
-    bool sharp = SKIP == 1 && max(own.x, own.y) < SHARP;
-    vec2 found = vec2(-1.0);
+    ivec2 size = textureSize(largest, 0) / ivec2(1, LEVELS + 1), here = ivec2(gl_FragCoord.xy);
+    int level = here.y / size.y, row = level * size.y;
+    ivec2 tile = here - ivec2(0, row);
+    bool sharp = is_sharp(tile, size.y);
+    // Half a texel of a block's width at either end.
+    float rim = float(1 << level);
+    reach = vec4(-1.0, -1.0, -1.0, 0.0);
     ivec2 from = max(tile - farthest, ivec2(0)), to = min(tile + farthest, size - 1);
     for (int y = from.y; y <= to.y; ++y)
         for (int x = from.x; x <= to.x; ++x) {
-            // Distance between the nearest pixel centres of the two tiles, and half a pixel for a sprite's rim.
             vec2 apart = max(abs(vec2(x, y) - vec2(tile)) * float(TILE) - float(TILE - 1), vec2(0.0));
-            float distance = length(apart);
-            vec4 there = texelFetch(largest, ivec2(x, y), 0);
-            float visible = sharp ? there.x : max(there.x, there.y);
-            if (visible * EXTENT + 1.0 > distance) found.x = max(found.x, visible);
-            if (!sharp && there.z * EXTENT + 1.0 > distance) found.y = max(found.y, there.z);
+            float distance = length(apart) - rim;
+            vec4 there = texelFetch(largest, ivec2(x, y + row), 0);
+            vec3 radius = vec3(sharp ? there.x : max(there.x, there.y), sharp ? -1.0 : there.z, there.w);
+            bvec3 reaches = greaterThan(radius * max(extent, 1.0), vec3(max(distance, -0.5)));
+            reach.xyz = max(reach.xyz, mix(vec3(-1.0), radius, reaches));
         }
-    bool copied = sharp && found.x < SHARP;
-    reach = copied ? vec4(-1.0, -1.0, 1.0, 0.0) : vec4(found * EXTENT, 0.0, 0.0);
+    if (sharp && level == 0 && reach.x < sharp_radius()) reach.x = -1.0;
 }
