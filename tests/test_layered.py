@@ -205,6 +205,17 @@ def test_a_silhouette_between_two_layers_is_covered_by_what_is_there(gpu: Gpu):
     assert light == pytest.approx(6.0, rel=0.03) and paper > 6.0 * 1.06
 
 
+@pytest.mark.parametrize("width", [1, 2, 6])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_small_light_is_as_bright_at_every_depth(gpu: Gpu, width: int, sign: int):
+    """Also between two layers, where it is in both: at most 8 % of it is lost or gained, of one pixel 3 %."""
+    color = np.zeros((129, 129, 3))
+    color[60 : 60 + width, 62 : 62 + width] = 50.0
+    for radius in np.linspace(2.0, 9.0, 8):
+        coc = np.where(color[..., 0] > 0.0, sign * radius, 0.0 if sign < 0 else 14.0)
+        assert picture(gpu, color, coc)[..., 0].sum() == pytest.approx(50.0 * width**2, rel=0.08 if width > 1 else 0.03)
+
+
 CAMERA = Camera(position=(0.3, 0.2, 5.0), target=(0.0, 0.0, 0.0))
 WIDE = Lens(radius=0.25, focus_distance=5.0)
 
@@ -301,8 +312,8 @@ def demos(session_gpu: Gpu) -> Iterator[dict[str, Pipeline]]:
         pipeline.release()
 
 
-# Against 48 views, whose own error is a part of what is measured: 42.7, 43.3 and 40.2 dB against 400.
-@pytest.mark.parametrize("name, floor", [("foreground", 40.0), ("background", 40.3), ("rail", 38.8)])
+# Against 48 views, whose own error is a part of what is measured: against 400 it is 42.7, 44.5 and 40.7 dB.
+@pytest.mark.parametrize("name, floor", [("foreground", 40.0), ("background", 41.5), ("rail", 38.8)])
 def test_quality_is_above_its_floor(demos: dict[str, Pipeline], name: str, floor: float):
     settings = demo_settings(name)
 

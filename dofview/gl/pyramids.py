@@ -63,8 +63,8 @@ def reduce(
 ) -> None:  # fmt: skip
     """Write `coarse`, half the size of `fine` rounded up. `fine` must be fetched bilinearly (`linear=True`)."""
     draw(
-        gpu, "pass/reduce.frag", coarse, textures={"fine": fine}, defines={analysis.name: 1}, blend=blend, within=within,
-        clear=clear,
+        gpu, "pass/reduce.frag", coarse, textures={"fine": fine}, defines={analysis.name: 1}, blend=blend,
+        within=within, clear=clear,
     )  # fmt: skip
 
 

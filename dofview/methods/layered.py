@@ -52,7 +52,7 @@ class Params(BaseParams):
         json_schema_extra={"symbol": "M"},
     )  # fmt: skip
     step: float = Field(
-        default=0.75, ge=0.25, le=8.0, description="CoC radius of the layers next to the focus, px.",
+        default=1.0, ge=0.25, le=8.0, description="CoC radius of the layers next to the focus, px.",
         json_schema_extra={"unit": "px"},
     )  # fmt: skip
     power: float = Field(
@@ -113,10 +113,13 @@ def render(frame: Frame, params: Params) -> Image:
 
 
 def layout(frame: Frame, params: Params) -> Plan:
-    """The layers that the CoC range of `frame` calls for."""
-    nearest, farthest = frame.coc_range()
-    widest = float(max(frame.size))
-    near, far = min(max(-nearest, 0.0), widest), min(max(farthest, 0.0), widest)
+    """The layers that the CoC range of the surfaces in `frame` calls for."""
+    # Up to the farthest surface: the background behind it has one colour, which no blur changes.
+    depths, widest = frame.depth_range(), float(max(frame.size))
+    near, far = (
+        min(max(sign * float(frame.coc.radius_px(depth)), 0.0), widest)
+        for sign, depth in ((-1.0, depths.nearest), (1.0, depths.farthest_surface))
+    )
     sigma = frame.lens_block.sigma
     if params.constants == Constants.PAPER:
         sigma, front, back = PAPER_SIGMA, recursive(near), recursive(far)

@@ -36,10 +36,12 @@ class Peels:
         self.textures = {f"color{m}": surfaces.color for m, surfaces in enumerate(peels)} | self.depths
         self.content = self._content(visible and not exhausted)
 
-    def draw(self, shader: str, into: Image, layer: Layer, *, values: dict | None = None, **how: object) -> None:
-        """Run a shader that includes `matte.glsl` for `layer`."""
+    def draw(
+        self, shader: str, into: Image, layer: Layer, *, values: dict | None = None, reach: float = 0.0, **how: object
+    ) -> None:
+        """Run a shader that includes `matte.glsl` for `layer`, whose filter reaches `reach` px."""
         how["defines"] = {**self.defines, **how.get("defines", {})}
-        values = {"start": self.start, **(values or {}), **self._values(layer)}
+        values = {"start": self.start, **(values or {}), **self._values(layer), "reach": reach}
         self.recipe.draw(shader, into, values=values, **self.textures, **how)
 
     def final(self, focus: Layer, sides: dict[str, Image], *, fill: bool) -> Image:
@@ -68,7 +70,7 @@ class Peels:
         return filled
 
     def _values(self, layer: Layer) -> dict[str, object]:
-        return {"anchors": layer.anchors, "background": self.background}
+        return {"anchors": layer.anchors, "background": self.background, "reach": 0.0}
 
     def _pack(self, peels: Sequence[Surfaces]) -> dict[str, Image]:
         """Inverse depths of four peels in each texel."""
@@ -87,7 +89,7 @@ class Peels:
         key = (self.frame.geometry_key, "layered content", self.defines["PEELS"], background_counts)
         if key not in self.frame.cache.values:
             depths, size = self.frame.depth_range(), self.frame.size
-            extent = depths.nearest - depths.farthest
+            extent = depths.nearest - depths.farthest_surface
             slices = SLICES / extent if extent > 0.0 else 0.0
             shape = (-(-size[0] // CELL), -(-size[1] // CELL))
             images = [self.recipe.image("content", shape, dtype="u4"), self.recipe.image("content extremes", shape)]

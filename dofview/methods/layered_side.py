@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ class Side:
             level = step.layer.level
             joined = self._image("joined", level, number)
             if across is None:
-                self._join(step.layer, joined, places)
+                self._join(step, joined, places)
             else:
                 self._carry_on(across, plan[number - 1], tiles[number - 1], step, places, number, joined)
             if step.finished.any():
@@ -58,7 +59,7 @@ class Side:
                 self._enlarge(blurred, level, total, places.finished, places.around)
             across = self._convolved(joined, "across", level, kernel(step.sigma), (1, 0), places.after)
             if self.inspect:
-                self._join(step.layer, self._image("layer", level, number), places, alone=True)
+                self._join(step, self._image("layer", level, number), places, alone=True)
                 self._convolved(across, "blurred", level, kernel(step.sigma), (0, 1), places.after, number + 1)
         level, weights = plan[-1].layer.level, kernel(plan[-1].sigma)
         if level == 0:
@@ -78,7 +79,7 @@ class Side:
             layer = step.layer
             self._cleared.clear()
             alone = self._image("layer", layer.level, number)
-            self._join(layer, alone, places, alone=True)
+            self._join(replace(step, sigma=0.0), alone, places, alone=True)
             across = self._convolved(alone, "across", layer.level, kernel(step.sigma), (1, 0), places.after)
             blurred = self._convolved(across, "blurred", layer.level, kernel(step.sigma), (0, 1), places.after, number)
             if layer.level > 0:
@@ -96,28 +97,30 @@ class Side:
         former, level, weights = before.layer.level, step.layer.level, kernel(before.sigma)
         if former == level and len(weights) <= MOST_TAPS:
             self._convolve(across, joined, level, weights, (0, 1), places.others)
-            self._join(step.layer, joined, places, across=across, weights=weights)
+            self._join(step, joined, places, across=across, weights=weights)
             return
         blurred = self._convolved(across, "blurred", former, weights, (0, 1), held.after, number)
         if former == level:
             self._convolve(blurred, joined, level, UNCHANGED, (0, 1), places.others)
-            self._join(step.layer, joined, places, across=blurred)
+            self._join(step, joined, places, across=blurred)
             return
         if former > level + 1:
             finer = self._image("enlarged", level + 1)
             self._enlarge(blurred, former, finer, held.after, held.after, level + 1)
             blurred = finer
         self._enlarge(blurred, level + 1, joined, places.others, places.others, level)
-        self._join(step.layer, joined, places, coarse=blurred)
+        self._join(step, joined, places, coarse=blurred)
 
     def _join(
-        self, layer: Layer, into: Image, places: Places, *, across: Image | None = None, coarse: Image | None = None,
+        self, step: Step, into: Image, places: Places, *, across: Image | None = None, coarse: Image | None = None,
         weights: Weights = UNCHANGED, alone: bool = False,
     ) -> None:  # fmt: skip
-        """Draw `layer` under or over what `across` holds, filtered along y by `weights`, or `coarse`, or the start.
+        """Draw the layer of `step` under or over what `across` holds, filtered along y by `weights`, or `coarse`, or
+        the start.
 
         At a quarter of the size `into` holds that already, and the layer comes to it by way of half the size.
         """
+        layer = step.layer
         added = layer.level == MOST_HALVINGS
         target = self._image("added", 1) if added else into
         buffered = (into if across else None) if added else across or coarse
@@ -132,8 +135,10 @@ class Side:
             defines["FRONT"] = 1
         if added:
             defines["ADDED"] = 1
+        reach = 1.5 * step.sigma * 2**layer.level
         self.peels.draw(
-            "join.frag", target, layer, defines=defines, values=values, within=_at(places.own, min(layer.level, 1)),
+            "join.frag", target, layer, reach=reach, defines=defines, values=values,
+            within=_at(places.own, min(layer.level, 1)),
             clear=NOTHING if added else self._clear(into), **({"buffered": buffered} if buffered else {}),
         )  # fmt: skip
         if added:

@@ -7,12 +7,12 @@
 // SHARED: anchors lie at the layers' own depths. Of a surface between layers k-1 and k, the nearer of them takes the
 // `head`, 1-t, and layer k the `tail`, t. In the front buffer the head is there first and has been blurred: beside it
 // the tail adds t, or what coverage is left, so that the silhouette is the mean of the two blurs. In the back buffer the
-// sharper head is blended over the tail, which therefore may stay whole; only its beginning is softened, or a silhouette
-// would get its halo at once when it crosses a layer.
+// tail is there first, and the sharper head is blended over it. Inside a surface the tail must be whole, or what it
+// hides would shine through; at silhouettes it must be t, or they would be widened and small lights be brighter. So it
+// is in between by how much of the surface is around (`presence`).
 // PAPER: anchors lie half way between layers; omega and omega-dot as printed. The tail is whole in front too and lies
 // under its own head, which widens every silhouette by a part of the blur between two layers.
 const float MARGIN = 1e-5;
-const float TAIL_SLOPE = 10.0;
 
 uniform sampler2D depths_first;
 uniform sampler2D color0;
@@ -39,6 +39,7 @@ uniform sampler2D color6;
 uniform sampler2D color7;
 #endif
 uniform vec4 anchors;  // inverse depths z_(k-2), z_(k-1), z_k, z_(k+1) of layer k, falling
+uniform float reach;  // px: how far the filter carries what is in this layer
 uniform vec4 background;  // alpha 0: it cannot be seen, and what lies behind the last surface does not matter
 
 struct Surface
@@ -102,6 +103,26 @@ float tail(float inverse_depth, float before)
     return before >= anchors.y ? share : float(share > 0.0);
 }
 
+// 1 inside a surface, towards 0 where what is around a pixel lies farther than it by a quarter of the interval.
+float presence(ivec2 pixel, float inverse_depth)
+{
+    const vec2 around[8] = vec2[8](vec2(1.0, 0.0), vec2(0.7, 0.7), vec2(0.0, 1.0), vec2(-0.7, 0.7), vec2(-1.0, 0.0),
+        vec2(-0.7, -0.7), vec2(0.0, -1.0), vec2(0.7, -0.7));
+    ivec2 last = textureSize(depths_first, 0) - 1;
+    float quarter = max(0.25 * (anchors.y - anchors.z), 1e-37), found = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        float other = texelFetch(depths_first, clamp(pixel + ivec2(round(reach * around[i])), ivec2(0), last), 0).r;
+        found += clamp(1.0 - (inverse_depth - other) / quarter, 0.0, 1.0);
+    }
+    return smoothstep(0.3, 1.0, found / 8.0);
+}
+
+// What a tail covers in the back buffer; its first tenth without a step, or a silhouette would get a halo at once.
+float covering(ivec2 pixel, float inverse_depth, float share)
+{
+    return mix(share, min(10.0 * share, 1.0), presence(pixel, inverse_depth));
+}
+
 // The layer by itself, premultiplied.
 vec4 layer(ivec2 pixel)
 {
@@ -114,7 +135,9 @@ vec4 layer(ivec2 pixel)
 #ifdef PAPER
         float omega = z >= anchors.z ? ramp(z, anchors.x, anchors.y) : m == 0 ? 1.0 - ramp(z, anchors.z, anchors.w) : 0.0;
 #else
-        float omega = z > anchors.y ? 0.0 : z >= anchors.z ? min(TAIL_SLOPE * tail(z, before), 1.0) : head(z, before);
+        float omega = z > anchors.y ? 0.0
+            : z >= anchors.z        ? covering(pixel, z, tail(z, before))
+                                    : head(z, before);
 #endif
         sum += (1.0 - sum.a) * omega * surfaces[m].color;
         before = z;
