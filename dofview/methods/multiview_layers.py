@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
-import moderngl
 from pydantic import BaseModel, ConfigDict
 
 from dofview.gl.layered import DepthArray
@@ -143,7 +142,6 @@ def build(recipe: Recipe, kind: Kind) -> Layers:
                 if kind.mipmaps:
                     for name in images.keys() - {"layer_inverse_depth"}:
                         images[name].texture.build_mipmaps(0, MOST_MIP_LEVEL)
-                        images[name].texture.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
         source = {"layer_inverse_depth": images["layer_inverse_depth"]}
         recipe.draw("occupied.frag", occupied, blocks={"Slabs": slabs}, defines={"DETAIL": kind.detail}, **source)
     return Layers(slabs, images, occupied)
