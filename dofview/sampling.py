@@ -19,6 +19,7 @@ import numpy as np
 
 from dofview.bokeh import load
 from dofview.lens import Distribution, Lens
+from dofview.rings import rings
 
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 # Steps of the pixel positions of the fixed set. With 1 and the golden ratio they span the integers of Q(√3, √5), so the
@@ -29,19 +30,22 @@ _BITS = 32
 _MASK = 0xFFFFFFFF
 
 
-def lens_samples(lens: Lens, count: int, *, progressive: bool, start: int = 0, seed: int = 0) -> np.ndarray:
+def lens_samples(
+    lens: Lens, count: int, *, progressive: bool, start: int = 0, seed: int = 0, symmetric: bool = False
+) -> np.ndarray:  # fmt: skip
     """Return `count` points on the lens, (count, 2) float64 in lens radii, x right and y up as seen from the camera.
 
     Progressive sets are samples `start` to `start + count` of one endless sequence; a fixed set is made for its count.
     A polygon has its first corner at +x, an aperture picture has its top at +y, both turned counter-clockwise by
-    `lens.rotation_deg`. A Gaussian is not cut off; a picture reaches to ±1 and, turned, to √2.
+    `lens.rotation_deg`. A Gaussian is not cut off; a picture reaches to ±1 and, turned, to √2. A `symmetric` fixed set is
+    one of rings (`dofview.rings`) from four points on; no pixel positions go with it.
     """
     _check(count, start, progressive)
     if progressive:
         return on_lens(lens, _sobol_points((0, 1), count, start, seed))
     if lens.distribution == Distribution.IMAGE:
         return on_lens(lens, _lattice(count, seed))
-    points = _warp(spiral(count, seed), lens)
+    points = _warp(rings(count) if symmetric and count >= 4 else spiral(count, seed), lens)
     return points - points.mean(axis=0) if lens.distribution == Distribution.GAUSSIAN else points
 
 

@@ -148,7 +148,7 @@ def lens_points(frame: Frame, params: Params) -> np.ndarray:
         if params.jitter is Jitter.HALTON:
             frame.cache.values[key] = on_lens(frame.lens, halton(2 * params.samples))
         else:
-            frame.cache.values[key] = lens_samples(frame.lens, params.samples, progressive=False)
+            frame.cache.values[key] = lens_samples(frame.lens, params.samples, progressive=False, symmetric=True)
     return frame.cache.values[key]  # type: ignore[return-value]
 
 
