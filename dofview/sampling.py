@@ -37,8 +37,8 @@ def lens_samples(
 
     Progressive sets are samples `start` to `start + count` of one endless sequence; a fixed set is made for its count.
     A polygon has its first corner at +x, an aperture picture has its top at +y, both turned counter-clockwise by
-    `lens.rotation_deg`. A Gaussian is not cut off; a picture reaches to ±1 and, turned, to √2. A `symmetric` fixed set is
-    one of rings (`dofview.rings`) from four points on; no pixel positions go with it.
+    `lens.rotation_deg`. A Gaussian is not cut off; a picture reaches to ±1 and, turned, to √2. A `symmetric` fixed set
+    is one of rings (`dofview.rings`) from four points on; no pixel positions go with it.
     """
     _check(count, start, progressive)
     if progressive:

@@ -51,10 +51,12 @@ vec4 ray(vec2 start, vec2 lens_point, uint layers)
         float inverse_depth = mix(front, back, t);
 #if CONES
         // Around a ray that passes by, part of its cone may still be stopped. Layers share one surface more often than
-        // they hide each other, so what they cover adds up.
+        // they hide each other, so what they cover adds up; where one ends and the next begins a little may be missing.
         vec4 part = seen(q, k, cone_level(coc_radius(inverse_depth)), inverse_depth, lens_point);
-        if (more && part.a > 0.0 && on_canvas(q)) met += part * min(1.0, (1.0 - met.a) / part.a);
-        found = met.a > 0.996;
+        float enough = met.a > 0.0 ? 0.8 : 0.996;
+        found = part.a > 0.0 && on_canvas(q);
+        if (more && found) met += part * min(1.0, (1.0 - met.a) / part.a);
+        found = found && met.a > enough;
 #endif
         if (more) {
             hit = found;
