@@ -23,6 +23,7 @@ VIEWS = 256
 COMPARED = {
     "layered": ("demo:foreground", "gaussian", (272, 204)),
     "mipmap": ("demo:background", "gaussian", (320, 240)),
+    "multiview": ("demo:foreground", "uniform_disc", (272, 204)),
     "pyramid": ("demo:foreground", "gaussian", (272, 204)),
 }
 RADII = (0.1, 0.3, 1.0, 3.0)

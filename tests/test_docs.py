@@ -82,7 +82,7 @@ def test_the_picture_in_the_readme_is_what_is_rendered(gpu: Gpu, pictures: Modul
     assert off <= 0.01, f"{off:.1%} of the pixels changed; if they should, `make docs` makes the picture anew"
 
 
-@pytest.mark.parametrize("name", ["layered", "mipmap", "pyramid"])
+@pytest.mark.parametrize("name", ["layered", "mipmap", "multiview", "pyramid"])
 def test_a_comparison_shows_the_method_as_it_is(gpu: Gpu, name: str):
     """The left third of a page's picture, made again; a different driver may round differently."""
     comparisons = script("comparisons")
