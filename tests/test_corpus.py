@@ -8,9 +8,10 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from test_load_hostile import load_or_refuse
+from test_load_hostile import check_scene, load_or_refuse
 
 from dofview.scene.info import describe
+from dofview.scene.load import load
 
 CORPUS = Path(os.environ.get("DOFVIEW_CORPUS") or Path(__file__).resolve().parents[2] / "shared" / "corpus")
 pytestmark = pytest.mark.skipif(not CORPUS.is_dir(), reason="no corpus of scene files here")
@@ -63,16 +64,16 @@ VALIDATED = {
 
 @pytest.mark.parametrize("path", files("khronos/*/*.gl*", "asset-generator/*/*.gltf"), ids=lambda path: path.stem)
 def test_valid_gltf_has_the_triangles_it_should(path: Path) -> None:
-    scene = load_or_refuse(path)
-    assert scene is not None
+    scene = load(path)
+    check_scene(scene)
     facts = describe(scene)
     assert facts["triangles"] == declared_triangles(path) == VALIDATED.get(path.stem, facts["triangles"])
 
 
 @pytest.mark.parametrize("path", files("obj/**/*.obj"), ids=lambda path: path.stem)
 def test_valid_obj_has_the_triangles_it_should(path: Path) -> None:
-    scene = load_or_refuse(path)
-    assert scene is not None
+    scene = load(path)
+    check_scene(scene)
     text = path.read_text("latin-1").replace("\\\n", " ")
     faces = [line.split("#")[0].split()[1:] for line in text.splitlines() if line.strip().startswith("f ")]
     # The two files with faces on no or infinite vertices say so instead.

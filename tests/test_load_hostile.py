@@ -22,7 +22,7 @@ from dofview.errors import ModelError
 from dofview.scene import gltf
 from dofview.scene.info import describe
 from dofview.scene.limits import Limits
-from dofview.scene.load import load
+from dofview.scene.load import PAUSES, load
 from dofview.scene.model import Scene
 from dofview.scene.notes import one_line
 
@@ -376,7 +376,7 @@ def test_names_are_made_fit_to_be_shown(tmp_path: Path) -> None:
 
 def test_a_file_that_changes_while_it_is_read_is_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write(tmp_path / "a.gltf")
-    read, changes = gltf.read, [2]
+    read, changes = gltf.read, [len(PAUSES)]
 
     def changing(*args: Any) -> Scene:
         scene = read(*args)
@@ -388,7 +388,7 @@ def test_a_file_that_changes_while_it_is_read_is_read_again(tmp_path: Path, monk
     monkeypatch.setattr(gltf, "read", changing)
     with pytest.raises(ModelError, match="changed while it was read"):
         load(path)
-    changes[0] = 1
+    changes[0] = len(PAUSES) - 1
     assert load(path).triangle_count == 3
 
 

@@ -7,6 +7,7 @@ demo:NAME[@SIZE]   a procedural scene of dofview/scene/demo.py
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,6 +19,8 @@ from dofview.scene.model import Scene
 from dofview.scene.notes import one_line
 
 DEMO = "demo:"
+PAUSES = (0.0, 0.05, 0.2, 0.5)
+"""Seconds to wait before each attempt to read files that are being written: exporters need a moment."""
 ACCEPTED = f"a .gltf, .glb or .obj file, or {DEMO}NAME"
 
 
@@ -74,8 +77,9 @@ def load(spec: str | Path, limits: Limits | None = None) -> Scene:
 
 
 def _load_stable(path: Path, limits: Limits) -> Scene:
-    """Load, and once more if a file was being written meanwhile, so that a scene is never a mix of two states."""
-    for _ in range(2):
+    """Load, and again if a file was being written meanwhile, so that a scene is never a mix of two states."""
+    for pause in PAUSES:
+        time.sleep(pause)
         folder = Folder(path.parent, Account(limits))
         try:
             scene = _load_once(path, folder)
