@@ -408,7 +408,6 @@ def test_broken_attributes_are_repaired(loaded) -> None:
     np.testing.assert_array_equal(primitive.colors[:, :3], [[1, 1, 1], [1, 0, 0], [65504, 0, 0.5]])
 
 
-@pytest.mark.skipif(not draco.available(), reason="DracoPy is not installed")
 def test_draco(loaded) -> None:
     import DracoPy
 

@@ -5,7 +5,7 @@
     features    extensions: refused, honoured or listed
     nodes       transforms, cameras
     accessors   buffers → arrays, every bound checked first
-    draco       compressed arrays (optional)
+    draco       compressed arrays
     geometry    primitives → indexed triangles
     materials   factors, textures, samplers, pictures
 

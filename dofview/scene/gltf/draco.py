@@ -1,4 +1,4 @@
-"""KHR_draco_mesh_compression through the optional package DracoPy (`pip install dofview[draco]`)."""
+"""KHR_draco_mesh_compression through DracoPy, and what is said where that has no build for a machine."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def check_extensions(document: Document, notes: Notes) -> None:
     required = document.root.strings("extensionsRequired")
     refused = [name for name in dict.fromkeys(required) if name not in honoured]
     if refused == [draco.EXTENSION]:
-        raise ModelError(f"needs {draco.EXTENSION}; install DracoPy for it: pip install 'dofview[draco]'")
+        raise ModelError(f"needs {draco.EXTENSION}; install DracoPy for it: pip install DracoPy")
     if refused:
         names = ", ".join(one_line(name, 60) for name in refused[:5])
         raise ModelError(f"needs {names}, which dofview does not read; accepted: {', '.join(sorted(honoured))}")
