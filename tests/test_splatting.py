@@ -76,7 +76,7 @@ def test_gather_equals_scatter_without_the_hidden_image_and_with_the_papers_cons
 @pytest.mark.parametrize("lens", [MIDDLE, Lens(radius=0.2, focus_distance=2.8), Lens(radius=0.05, focus_distance=5.0)])
 @pytest.mark.parametrize("reduction", Reduction)
 def test_skipping_changes_nothing(planes: Pipeline, lens: Lens, reduction: Reduction):
-    settings = settings_for(lens).with_params(reduction=reduction, debug=True)
+    settings = settings_for(lens).with_params(reduction=reduction, inspect=True)
     skipped = planes.render(settings).pixels()
     assert np.abs(planes.render(settings.with_params(skip=False)).pixels() - skipped).max() <= 1e-5
 
@@ -84,14 +84,14 @@ def test_skipping_changes_nothing(planes: Pipeline, lens: Lens, reduction: Reduc
 def test_skipped_work_is_counted(planes: Pipeline):
     """Nothing in front of focus: no second geometry pass. Hardly open: the focused panel's tiles are copied. One blur
     everywhere: no layer in front."""
-    near = planes.render(settings_for(Lens(radius=0.2, focus_distance=2.75)).with_params(debug=True)).counts
+    near = planes.render(settings_for(Lens(radius=0.2, focus_distance=2.75)).with_params(inspect=True)).counts
     assert near["splatting hidden passes skipped"] == 1
-    sharp = settings_for(Lens(radius=0.05, focus_distance=5.0)).with_params(debug=True)
+    sharp = settings_for(Lens(radius=0.05, focus_distance=5.0)).with_params(inspect=True)
     counts = planes.render(sharp).counts
     assert 0 < counts["splatting tiles copied"] < counts["splatting tiles"]
     assert "splatting hidden passes skipped" not in counts and "splatting front layers skipped" not in counts
     assert planes.render(sharp.with_params(skip=False)).counts["splatting tiles copied"] == 0
-    flat = planes.render(settings_for(Lens(radius=0.01, focus_distance=50.0)).with_params(debug=True)).counts
+    flat = planes.render(settings_for(Lens(radius=0.01, focus_distance=50.0)).with_params(inspect=True)).counts
     assert flat["splatting front layers skipped"] == 1
 
 
@@ -279,8 +279,8 @@ def test_a_circle_larger_than_any_sprite_is_cut_but_finite(planes: Pipeline, com
     assert np.isfinite(picture).all() and picture.min() >= 0.0 and picture.max() <= 1.0
 
 
-def test_debug_views_are_kept_by_name(planes: Pipeline):
-    planes.render(settings_for().with_params(debug=True))
+def test_steps_are_kept_by_name(planes: Pipeline):
+    planes.render(settings_for().with_params(inspect=True))
     names = {image.name for image in planes.gpu.targets.named("splatting/")} | {"frame/pinhole"}
     wanted = {"frame/pinhole", *(f"splatting/{n}" for n in ("hidden", "L0", "L1", "L2", "k_n", "reach", "largest"))}
     assert wanted <= names

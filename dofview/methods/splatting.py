@@ -95,8 +95,8 @@ class Params(BaseParams):
         default=Computation.GATHER, description="gather: each pixel looks for its sprites; scatter: sprites are drawn."
     )
     skip: bool = Field(default=True, description="Leave out work that cannot change the picture.")
-    debug: bool = Field(
-        default=False, description="Keep the three layers as images, and count tiles that were skipped."
+    inspect: bool = Field(
+        default=False, description="Keep the three layers as images to look at, and count tiles that were skipped."
     )
 
 
@@ -128,13 +128,13 @@ def _gather(recipe: Recipe, points: Points, picture: Image, params: Params) -> N
             textures |= {"sprites_with": layers[0], "sprites_behind": layers[1], "sprites_in_front": layers[2]}
             flags["SPRITES"] = 1
     into = [picture]
-    if params.debug:
+    if params.inspect:
         into += [recipe.image(f"L{i}") for i in range(3)]
-        flags["DEBUG"] = 1
+        flags["INSPECT"] = 1
     if params.skip and not _has_front(frame.coc_range(), params.delta):
         flags["NO_FRONT"] = 1
         recipe.gpu.profile.count("splatting front layers skipped")
-    if params.debug or recipe.gpu.profile.timing:
+    if params.inspect or recipe.gpu.profile.timing:
         _count_tiles(recipe, reach, points.levels)
     recipe.draw(
         "gather.frag", into, defines=flags, values={"merged_from": points.merged_from, **points.sprite.values},

@@ -33,7 +33,7 @@ uniform sampler2D hidden_points_3;
 #endif
 
 layout(location = 0) out vec4 color;
-#ifdef DEBUG
+#ifdef INSPECT
 layout(location = 1) out vec4 layer_0;
 layout(location = 2) out vec4 layer_1;
 layout(location = 3) out vec4 layer_2;
@@ -95,7 +95,7 @@ void main()
 #endif
     add_hidden(layers, hidden);
     color = compose(layers);
-#ifdef DEBUG
+#ifdef INSPECT
     layer_0 = layers.front;
     layer_1 = layers.same;
     layer_2 = layers.behind;
