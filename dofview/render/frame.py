@@ -6,7 +6,6 @@ background), not on the lens, so moving the focus or switching methods draws no 
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from typing import NamedTuple
 
 from pydantic import BaseModel, ConfigDict
@@ -114,7 +113,7 @@ class Frame:
 
     def pinhole(self) -> Surfaces:
         """The nearest surfaces, over the background: colour is defined everywhere."""
-        return self._surfaces("pinhole", None, None)
+        return self._surfaces("pinhole")
 
     def peel(self, index: int) -> Surfaces | None:
         """The surfaces behind `index` others, alpha 0 where there are none; None when there are none at all.
@@ -126,7 +125,7 @@ class Frame:
         before = self.peel(index - 1)
         if before is None:
             return None
-        surfaces = self._surfaces(f"peel{index}", "render/reject_peel.glsl", before)
+        surfaces = self._surfaces(f"peel{index}", before.inverse_depth)
         return surfaces if self.cache.values[(self.geometry_key, surfaces.color.name)] else None
 
     def depth_range(self) -> DepthRange:
@@ -145,7 +144,7 @@ class Frame:
         depths = self.depth_range()
         return float(self.coc.radius_px(depths.nearest)), float(self.coc.radius_px(depths.farthest))
 
-    def _surfaces(self, name: str, reject: str | None, before: Surfaces | None) -> Surfaces:
+    def _surfaces(self, name: str, behind: Image | None = None) -> Surfaces:
         targets = self.gpu.targets
         color = targets.image(f"frame/{name}", self.size)
         inverse_depth = targets.image(f"frame/{name} inverse depth", self.size, components=1)
@@ -153,13 +152,12 @@ class Frame:
             (self.geometry_key, name), inverse_depth
         ):
             return Surfaces(color, inverse_depth)
-        textures = {"peeled_inverse_depth": before.inverse_depth} if before else {}
         passed = self.gpu.samples_passed
-        with self.gpu.profile.section(f"scene/{name}"), passed if reject else nullcontext():
+        with self.gpu.profile.section(f"scene/{name}"):
             draw_scene(
-                self.gpu, self.scene, self.projection(), (color, inverse_depth), lights=self.lights, reject=reject,
-                background=(0.0, 0.0, 0.0) if reject else self.background, textures=textures,
+                self.gpu, self.scene, self.projection(), (color, inverse_depth), lights=self.lights, behind=behind,
+                background=(0.0, 0.0, 0.0) if behind else self.background, passed=passed if behind else None,
             )  # fmt: skip
-        if reject:
+        if behind:
             self.cache.values[(self.geometry_key, color.name)] = passed.samples > 0
         return Surfaces(color, inverse_depth)
