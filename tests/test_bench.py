@@ -11,11 +11,12 @@ import pytest
 
 from dofview.bench.measure import Bench
 from dofview.bench.pareto import front, pick
-from dofview.bench.plan import Case, Sweep, quick
+from dofview.bench.plan import Case, Sweep, cases, full, qualities, quick
 from dofview.bench.run import bench
 from dofview.bench.store import Store
 from dofview.errors import InputError
 from dofview.methods import METHODS
+from dofview.settings import Settings
 
 TINY = Sweep(
     scenes=("demo:crossing",), methods=("mipmap",), coc_px=(4.0, 8.0), sizes=((64, 48),), frames=1, views=16,
@@ -25,12 +26,12 @@ TINY = Sweep(
 
 def test_a_sweep_is_measured_once_and_taken_up_again(tmp_path):
     seen: list[Case] = []
-    store = bench(TINY, tmp_path, lambda case, record: seen.append(case))
+    store = bench([TINY], tmp_path, lambda case, record: seen.append(case))
     assert len(seen) == len(list(TINY.cases())) == 4
     text = (tmp_path / "results.jsonl").read_text()
     (tmp_path / "results.jsonl").write_text("".join(text.splitlines(keepends=True)[:3])[:-20])
     again: list[Case] = []
-    store = bench(TINY, tmp_path, lambda case, record: again.append(case))
+    store = bench([TINY], tmp_path, lambda case, record: again.append(case))
     assert len(again) == 2, "the cut line and the missing one are measured again"
     assert len(store.records) == len(Store(tmp_path).records) == 4
     rows = list(csv.DictReader((tmp_path / "results.csv").open()))
@@ -40,12 +41,12 @@ def test_a_sweep_is_measured_once_and_taken_up_again(tmp_path):
 
 
 def test_the_lens_gives_the_mean_coc_that_was_asked_for():
-    measurer = Bench(TINY)
+    measurer = Bench()
     case = next(iter(TINY.cases()))
     settings = measurer.settings(case)
-    frame = measurer._load(case.scene).frame(settings, guard=False)
+    frame = measurer.pipeline(case.scene).frame(settings, guard=False)
     coc = np.abs(frame.coc.radius_px(frame.pinhole().inverse_depth.pixels()))
-    record = measurer.run(case)
+    record = measurer.run(case, TINY)
     measurer.release()
     assert 2.0 * coc.mean() == pytest.approx(case.coc_px, rel=1e-4)
     assert record["ms"] > 0 and record["reference_views"] == 16 and record["triangles"] > 1000
@@ -53,8 +54,20 @@ def test_the_lens_gives_the_mean_coc_that_was_asked_for():
 
 
 def test_every_method_is_in_the_quick_sweep():
-    named = {case.method for case in quick().cases()}
+    named = {case.method for _, case in cases(quick())}
     assert named == set(METHODS) - {"pinhole"}
+
+
+def test_the_full_sweep_measures_each_case_once_and_every_quality():
+    found = [case for _, case in cases(full())]
+    assert len(found) == len({case.key for case in found})
+    for name in set(METHODS) - {"pinhole"}:
+        settings = qualities(name, every=True)
+        assert len(settings) >= 3
+        assert name == "accumulation" or {} in settings, "the defaults are one of them"
+        checked = [Settings(method=name).with_params(**parameters) for parameters in settings]
+        assert len(set(map(str, checked))) == len(settings)
+        assert {tuple(sorted(p.items())) for p in settings} == {c.parameters for c in found if c.method == name}
 
 
 def test_damage_in_the_middle_of_results_is_named(tmp_path):
@@ -93,7 +106,7 @@ def test_the_report_holds_every_case_and_every_claim(tmp_path):
     from dofview.bench.papers import CLAIMS
     from dofview.bench.report import write_report
 
-    store = bench(TINY, tmp_path)
+    store = bench([TINY], tmp_path)
     write_report(store)
     markdown = (tmp_path / "report.md").read_text()
     assert all(f"{record['psnr']:.2f}" in markdown for record in store.records)

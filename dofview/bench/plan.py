@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import product
 
 from dofview.lens import Distribution
@@ -12,6 +12,8 @@ from dofview.methods import METHODS, method
 
 UNMEASURED = ("pinhole", "accumulation")
 GAUSSIAN_BY_NATURE = ("mipmap", "layered", "pyramid")
+DEFAULT_VIEWS = 64
+"""Views of the accumulation that stands beside the methods' defaults."""
 
 
 @dataclass(frozen=True)
@@ -38,32 +40,62 @@ class Case:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Lists to be combined, and how long to measure."""
+    """Lists to be combined, and how long to measure.
+
+    `frames` are timed after a warm-up, fewer where they take seconds. The reference ends at `views` views, or where it
+    vouches for `trust_db`.
+    """
 
     scenes: tuple[str, ...] = ("demo:foreground", "demo:background", "demo:rail")
     methods: tuple[str, ...] = tuple(name for name in METHODS if name not in UNMEASURED)
     distributions: tuple[str, ...] = ()
-    coc_px: tuple[float, ...] = (4.0, 8.0, 16.0, 32.0, 64.0)
+    coc_px: tuple[float, ...] = (16.0, 8.0, 32.0, 4.0, 64.0)
     sizes: tuple[tuple[int, int], ...] = ((512, 384),)
     frames: int = 5
-    views: int = 1024
+    views: int = 512
+    trust_db: float = 55.0
     every_quality: bool = True
 
     def cases(self) -> Iterator[Case]:
-        """Every combination; reference views of few kinds come first, so that a picture of cost is there early."""
-        for scene, size, coc in product(self.scenes, self.sizes, self.coc_px):
-            for name in self.methods:
-                for distribution in self.distributions or (natural(name),):
+        """Every combination, one blur after the other; cases that share a reference follow one another."""
+        for coc, scene, size in product(self.coc_px, self.scenes, self.sizes):
+            for distribution in Distribution.UNIFORM_DISC.value, Distribution.GAUSSIAN.value:
+                of_lens = [
+                    name for name in self.methods if distribution in (self.distributions or (natural(name),))
+                ]  # fmt: skip
+                for name in [*of_lens, "accumulation"] if of_lens else []:
                     for parameters in qualities(name, self.every_quality):
                         yield Case(scene, name, distribution, coc, size, tuple(sorted(parameters.items())))
-            for distribution in self.distributions or sorted({natural(name) for name in self.methods}):
-                for views in (16, 64, 256) if self.every_quality else (64,):
-                    yield Case(scene, "accumulation", distribution, coc, size, (("views", views),))
 
 
-def quick() -> Sweep:
+def quick() -> tuple[Sweep, ...]:
     """Small enough for two cores and five minutes."""
-    return Sweep(coc_px=(8.0, 16.0), sizes=((192, 144),), frames=3, views=128, every_quality=False)
+    return (Sweep(coc_px=(8.0, 16.0), sizes=((192, 144),), frames=3, views=128, every_quality=False),)
+
+
+def full() -> tuple[Sweep, ...]:
+    """Every blur and quality; then, at one blur, the other lens, more and fewer pixels, and more triangles."""
+    sweep = Sweep()
+    one = replace(sweep, coc_px=(16.0,), every_quality=False, frames=3)
+    return (
+        sweep,
+        replace(one, distributions=tuple(kind.value for kind in (Distribution.UNIFORM_DISC, Distribution.GAUSSIAN))),
+        replace(one, scenes=("demo:background",), sizes=((256, 192), (512, 384), (1024, 768)), views=128),
+        replace(
+            one, scenes=("demo:background@5k", "demo:background", "demo:background@100k", "demo:background@500k"),
+            views=128,
+        ),
+    )  # fmt: skip
+
+
+def cases(sweeps: Iterable[Sweep]) -> Iterator[tuple[Sweep, Case]]:
+    """The cases of all `sweeps`, each once, with the sweep that says how to measure it."""
+    seen = set()
+    for sweep in sweeps:
+        for case in sweep.cases():
+            if case not in seen:
+                seen.add(case)
+                yield sweep, case
 
 
 def natural(name: str) -> str:
@@ -71,7 +103,13 @@ def natural(name: str) -> str:
     return Distribution.GAUSSIAN.value if name in GAUSSIAN_BY_NATURE else Distribution.UNIFORM_DISC.value
 
 
-def qualities(name: str, every: bool) -> Iterable[dict[str, object]]:
-    """The settings of a method from fast to fine, as it declares them in `QUALITIES`, or its defaults alone."""
-    declared: tuple[dict[str, object], ...] = getattr(method(name), "QUALITIES", ({},))
-    return declared if every else ({},)
+def qualities(name: str, every: bool) -> tuple[dict[str, object], ...]:
+    """The settings of a method from cheap to good, as it declares them in `QUALITIES`, or its defaults alone."""
+    if not every:
+        return ({"views": DEFAULT_VIEWS},) if name == "accumulation" else ({},)
+    return getattr(method(name), "QUALITIES", ({},))
+
+
+def is_default(record: dict) -> bool:
+    """Whether a record is of a method's defaults; accumulation's are those that stand beside them."""
+    return record["parameters"] in ({}, {"views": DEFAULT_VIEWS})

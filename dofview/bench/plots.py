@@ -6,6 +6,7 @@ import io
 import math
 
 from dofview.bench.pareto import front, quality
+from dofview.bench.plan import is_default
 from dofview.methods import METHODS
 
 # Okabe and Ito 2008: eight colours that stay apart for colour-blind readers.
@@ -38,7 +39,7 @@ def cost_against(records: list[dict], across: str, title: str, label: str) -> st
     for name in sorted({r["method"] for r in records}):
         found: dict[float, list[float]] = {}
         for record in records:
-            if record["method"] == name and _is_default(record):
+            if record["method"] == name and is_default(record):
                 found.setdefault(_across(record, across), []).append(record["ms"])
         xs = sorted(found)
         if len(xs) > 1:
@@ -63,10 +64,6 @@ def pass_bars(records: list[dict], title: str) -> str:
             bottom += value
     axes.set_xticks(range(len(records)), [r["method"] for r in records], fontsize=7, rotation=20)
     return _svg(figure)
-
-
-def _is_default(record: dict) -> bool:
-    return record["parameters"] in ({}, {"views": 64})
 
 
 def _across(record: dict, name: str) -> float:

@@ -13,6 +13,7 @@ from pathlib import Path
 from dofview.bench import plots
 from dofview.bench.papers import verdicts
 from dofview.bench.pareto import front, quality
+from dofview.bench.plan import is_default
 from dofview.bench.store import Store
 from dofview.export import write_whole
 
@@ -99,7 +100,7 @@ def _page(head: str, tables: list[Table], store: Store) -> str:
             title = f"{scene}, mean CoC {first['coc_px']:g} px, {first['distribution']}"
             parts.append(plots.error_against_time(group, title))
         middle = sorted({r["coc_px"] for r in chosen})[len({r["coc_px"] for r in chosen}) // 2]
-        defaults = [r for r in chosen if r["coc_px"] == middle and r["parameters"] in ({}, {"views": 64})]
+        defaults = [r for r in chosen if r["coc_px"] == middle and is_default(r)]
         parts.append(plots.pass_bars(defaults, f"{scene}: time by pass, mean CoC {middle:g} px"))
     for across, label in (("coc_px", "mean CoC diameter, px"), ("pixels", "pixels"), ("triangles", "triangles")):
         if len({plots._across(r, across) for r in records}) > 1:
@@ -124,7 +125,7 @@ def _thumbnails(store: Store) -> str:
     found = []
     for record in sorted(store.records, key=_order):
         path = store.folder / record.get("picture", "")
-        if record.get("picture") and path.is_file() and record["parameters"] in ({}, {"views": 256}, {"views": 64}):
+        if record.get("picture") and path.is_file():
             caption = f"{record['scene']} {record['method']} CoC {record['coc_px']:g}: {quality(record):.1f} dB"
             image = f"<img width=200 src='{_inline(path)}'>"
             found.append(f"<figure>{image}<figcaption>{html.escape(caption)}</figcaption></figure>")

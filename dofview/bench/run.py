@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from dofview.bench.measure import Bench
-from dofview.bench.plan import Case, Sweep
+from dofview.bench.plan import Case, Sweep, cases
 from dofview.bench.store import Store
 from dofview.errors import InputError
 
 OnCase = Callable[[Case, dict], None]
+Group = list[tuple[Sweep, Case]]
 
 
-def bench(sweep: Sweep, folder: Path, on_case: OnCase = lambda case, record: None) -> Store:
-    """Measure the cases of `sweep` that `folder` does not hold yet, and write its tables."""
+def bench(sweeps: Sequence[Sweep], folder: Path, on_case: OnCase = lambda case, record: None) -> Store:
+    """Measure the cases of `sweeps` that `folder` does not hold yet, and write its tables."""
     store = Store(folder)
-    missing = [case for case in sweep.cases() if not store.has(case)]
-    if missing:
-        measurer = Bench(sweep, folder)
+    left = missing(sweeps, store)
+    if left:
+        measurer = Bench(folder)
         try:
-            for case in missing:
-                record = measurer.run(case)
+            for sweep, case in left:
+                record = measurer.run(case, sweep)
                 store.add(case, record)
                 on_case(case, record)
         finally:
@@ -31,7 +32,7 @@ def bench(sweep: Sweep, folder: Path, on_case: OnCase = lambda case, record: Non
 
 
 def bench_on_dask(
-    sweep: Sweep, folder: Path, scheduler: str, on_case: OnCase = lambda case, record: None
+    sweeps: Sequence[Sweep], folder: Path, scheduler: str, on_case: OnCase = lambda case, record: None
 ) -> Store:  # fmt: skip
     """The same on the workers of the Dask scheduler at `scheduler`: cases that share a reference stay together, and
     what a lost worker had not sent is measured by another."""
@@ -40,32 +41,37 @@ def bench_on_dask(
     except ImportError as error:
         raise InputError("--scheduler needs the extra: pip install 'dofview[dask]'") from error
     store = Store(folder)
-    missing = [case for case in sweep.cases() if not store.has(case)]
+    left = missing(sweeps, store)
     try:
         client = Client(scheduler, timeout="20s")
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise InputError(f"no Dask scheduler at {scheduler}: {error}") from error
     with client:
-        futures = {client.submit(measure_group, sweep, group, pure=False): group for group in _groups(missing)}
+        futures = {client.submit(measure_group, group, pure=False): group for group in _groups(left)}
         for future in as_completed(list(futures)):
-            for case, record in zip(futures[future], future.result(), strict=True):
+            for (_, case), record in zip(futures[future], future.result(), strict=True):
                 store.add(case, record)
                 on_case(case, record)
     store.write_tables()
     return store
 
 
-def measure_group(sweep: Sweep, cases: list[Case]) -> list[dict]:
+def measure_group(group: Group) -> list[dict]:
     """Measure cases in this process, in a context of their own."""
-    measurer = Bench(sweep)
+    measurer = Bench()
     try:
-        return [measurer.run(case) for case in cases]
+        return [measurer.run(case, sweep) for sweep, case in group]
     finally:
         measurer.release()
 
 
-def _groups(cases: list[Case]) -> Iterator[list[Case]]:
-    together: dict[object, list[Case]] = {}
-    for case in cases:
-        together.setdefault(case.truth_key, []).append(case)
+def missing(sweeps: Sequence[Sweep], store: Store) -> Group:
+    """The cases that `store` does not hold, each with its sweep."""
+    return [(sweep, case) for sweep, case in cases(sweeps) if not store.has(case)]
+
+
+def _groups(left: Group) -> Iterator[Group]:
+    together: dict[object, Group] = {}
+    for sweep, case in left:
+        together.setdefault(case.truth_key, []).append((sweep, case))
     yield from together.values()

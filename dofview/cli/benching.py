@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
 from rich.progress import Progress
 
 from dofview.bench.pareto import pick, quality
-from dofview.bench.plan import Case, Sweep, quick
+from dofview.bench.plan import Case, Sweep, cases, full, quick
 from dofview.bench.report import write_report
-from dofview.bench.run import bench, bench_on_dask
+from dofview.bench.run import bench, bench_on_dask, missing
+from dofview.bench.store import Store
 from dofview.cli.chosen import read_size
 from dofview.errors import SettingsError
 from dofview.methods import method
@@ -22,16 +24,16 @@ def run_bench(
     frames: int | None, views: int | None, scheduler: str | None,
 ) -> None:  # fmt: skip
     """Measure a sweep into `out` and write its report there."""
-    sweep = _sweep(quick() if small else Sweep(), scenes, methods, coc, sizes, frames, views)
-    total = len(list(sweep.cases()))
+    sweeps = _chosen(quick() if small else full(), scenes, methods, coc, sizes, frames, views)
+    total = len(list(cases(sweeps)))
     with Progress(console=Console(stderr=True)) as progress:
-        task = progress.add_task("measuring", total=total)
+        task = progress.add_task("measuring", total=total, completed=total - len(missing(sweeps, Store(out))))
 
         def on_case(case: Case, record: dict) -> None:
             found = f"{case.scene} {case.method} CoC {case.coc_px:g}: {record['ms']:.1f} ms {quality(record):.1f} dB"
             progress.update(task, advance=1, description=found)
 
-        store = bench(sweep, out, on_case) if scheduler is None else bench_on_dask(sweep, out, scheduler, on_case)
+        store = bench(sweeps, out, on_case) if scheduler is None else bench_on_dask(sweeps, out, scheduler, on_case)
     write_report(store)
     print(f"{len(store.records)} cases in {out}: report.html, report.md, results.csv, results.json")
 
@@ -44,22 +46,23 @@ def run_pick(
     if budget_ms is None and min_psnr is None:
         raise SettingsError("pick needs --budget 8ms, --min-psnr 38, or both")
     sweep = dataclasses.replace(
-        quick(), scenes=(scene,), coc_px=(coc_px,), sizes=(read_size(size),), every_quality=True, views=256
+        quick()[0], scenes=(scene,), coc_px=(coc_px,), sizes=(read_size(size),), every_quality=True, views=256
     )
     import tempfile
 
     with tempfile.TemporaryDirectory() as folder:
-        store = bench(sweep, out or Path(folder))
+        store = bench([sweep], out or Path(folder))
         chosen = pick([r for r in store.records if r["scene"] == scene], budget_ms=budget_ms, min_psnr=min_psnr)
     flags = " ".join(f"--{name.replace('_', '-')} {value}" for name, value in chosen["parameters"].items())
     print(f"{chosen['ms']:.1f} ms, {quality(chosen):.1f} dB against its {chosen['distribution']} reference")
     print(f"dofview {scene} --method {chosen['method']} {flags}".rstrip())
 
 
-def _sweep(
-    sweep: Sweep, scenes: str | None, methods: str | None, coc: str | None, sizes: str | None, frames: int | None,
-    views: int | None,
-) -> Sweep:  # fmt: skip
+def _chosen(
+    sweeps: Sequence[Sweep], scenes: str | None, methods: str | None, coc: str | None, sizes: str | None,
+    frames: int | None, views: int | None,
+) -> Sequence[Sweep]:  # fmt: skip
+    """`sweeps`, or the first of them alone with the lists that were given."""
     changes: dict[str, object] = {}
     if scenes:
         changes["scenes"] = tuple(scenes.split(","))
@@ -75,7 +78,7 @@ def _sweep(
         changes["frames"] = _at_least_one(frames, "frames")
     if views is not None:
         changes["views"] = _at_least_one(views, "views")
-    return dataclasses.replace(sweep, **changes)
+    return (dataclasses.replace(sweeps[0], **changes),) if changes else sweeps
 
 
 def _number(text: str, name: str) -> float:

@@ -22,6 +22,8 @@ class Profile:
     def __init__(self, ctx: moderngl.Context, software: bool):
         self._ctx = ctx
         self.clock = "wall" if software else "gpu"
+        self.now = time.perf_counter
+        """What the wall is timed by; `bench` takes the time of the processor where that is the cost of a frame."""
         self.timing = False
         self.counts: Counter[str] = Counter()
         self.milliseconds: dict[str, float] = {}
@@ -48,10 +50,10 @@ class Profile:
         try:
             if self.clock == "wall":
                 self._ctx.finish()
-                start = time.perf_counter()
+                start = self.now()
                 yield
                 self._ctx.finish()
-                self._add(name, (time.perf_counter() - start) * 1e3)
+                self._add(name, (self.now() - start) * 1e3)
             else:
                 query = self._idle.pop() if self._idle else self._ctx.query(time=True)
                 with query:

@@ -19,6 +19,7 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = False
+QUALITIES = ({"views": 16}, {"views": 64}, {"views": 256})
 
 
 class Params(BaseParams):

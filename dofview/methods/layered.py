@@ -29,6 +29,9 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = True
+QUALITIES = (
+    {"step": 4.0, "peels": 1}, {"step": 2.0}, {}, {"step": 0.5, "peels": 3},
+)  # fmt: skip
 
 PAPER_SIGMA = 0.5
 """The paper's σ = d/4 (eq 10), as a fraction of the CoC radius."""

@@ -39,6 +39,8 @@ class Method(Protocol):
     """Whether what lies just outside the picture must be on the canvas to blur in."""
     Params: type[Params]
 
+    # Optional: QUALITIES, tuples of parameters from cheap to good, by which the benchmark measures the method.
+
     def render(self, frame: Frame, params: Params) -> Image: ...
 
 

@@ -26,6 +26,9 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = True
+QUALITIES = (
+    {"constants": "paper"}, {"anisotropic": False, "smooth_foreground": False}, {},
+)  # fmt: skip
 
 
 class Constants(StrEnum):

@@ -35,6 +35,9 @@ TITLE = "Multiview synthesis"
 CITATION = "S. Lee, E. Eisemann, H.-P. Seidel. Depth-of-Field Rendering with Multiview Synthesis. ACM TOG 28(5), 2009."
 REQUIRES_GL = 330
 GUARD_BAND = True
+QUALITIES = (
+    {"samples": 8, "layers": 8, "probes": 1}, {"samples": 16}, {}, {"samples": 64, "layers": 24},
+)  # fmt: skip
 NOISE_SIZE = 64
 Vec3 = tuple[float, float, float]
 

@@ -26,6 +26,9 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = True
+QUALITIES = (
+    {"analysis": "box2"}, {"analysis": "box4", "blur": "paper", "matting": "paper"}, {},
+)  # fmt: skip
 
 PAPER_RADIUS = 1.7
 CULLED = "methods/pyramid/culled.glsl"

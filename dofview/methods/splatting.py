@@ -24,6 +24,9 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = True
+QUALITIES = (
+    {"hidden": False, "reduced_from": 3.0}, {"reduced_from": 3.0}, {}, {"reduced_from": 12.0},
+)  # fmt: skip
 
 
 class Computation(StrEnum):
