@@ -80,42 +80,61 @@ def draw_scene(
     `values` are what it reads. `geometry` names a geometry shader and `framebuffer` its layered target. `passed` counts
     the samples that were drawn.
     """
-    ctx = gpu.ctx
-    _clear(gpu, framebuffer or gpu.targets.framebuffer(into, depth=True), into, (*background, background_alpha))
+    target = framebuffer or gpu.targets.framebuffer(into, depth=True)
+    _clear(gpu, target, into, (*background, background_alpha))
     if behind is not None:
         _close(gpu, behind)
         reject, textures = "render/reject_peel.glsl", {**(textures or {}), "peeled_inverse_depth": behind}
-    ctx.enable_only(moderngl.DEPTH_TEST)
-    ctx.depth_func = "<"
+
+    def run(into: moderngl.Framebuffer, depth_func: str, defines: Mapping[str, object]) -> None:
+        into.use()
+        gpu.ctx.viewport = (0, 0, *size)
+        gpu.ctx.enable_only(moderngl.DEPTH_TEST)
+        gpu.ctx.depth_func = depth_func
+        _draw_all(
+            gpu, scene, view, lights, reject=reject, geometry=geometry, textures=textures or {}, blocks=blocks or {},
+            values={"lod_bias": lod_bias, **(values or {})}, defines=defines,
+        )  # fmt: skip
+
+    size, defines = into[0].size, dict(defines or {})
+    nearest_first = reject is not None and framebuffer is None and gpu.software
+    if nearest_first:
+        # It goes on shading fragments that it has discarded, and most are. Only a failed depth test stops it.
+        run(gpu.targets.framebuffer(into[1:2], depth=True), "<", {**defines, "DEPTH_ONLY": 1})
     with passed or nullcontext():
-        for draw in scene.draws:
-            if not _visible(draw, view.clip_from_local):
-                gpu.profile.count("draws culled")
-                continue
-            material = scene.materials.items[draw.material]
-            all_blocks = {"Material": material.block, "Lights": lights.block, **(blocks or {})}
-            all_defines = {**material.features, **lights.defines, **(defines or {})}
-            if reject is not None:
-                all_defines |= {"HAS_REJECT": 1, "REJECT": reject}
-            stages = ["render/scene.vert", *([geometry] if geometry else []), "render/scene.frag"]
-            program = gpu.shaders.program(*stages, defines=all_defines, blocks=block_texts(all_blocks))
-            _set_culling(ctx, material.double_sided)
-            named = {name: texture for name, (texture, _) in material.textures.items()}
-            all_values = {
-                "clip_from_local": _column_major(view.clip_from_local), "lod_bias": lod_bias, **(values or {}),
-            }  # fmt: skip
-            all_values["eye"] = tuple(view.eye)
-            if "environment_map" in program.samplers:
-                named |= lights.textures
-            bind(gpu, program, {**named, **(textures or {})}, all_blocks, all_values)
-            samplers = list(enumerate(sampler for _, sampler in material.textures.values()))
-            for unit, sampler in samplers:
-                sampler.use(unit)
-            scene.array(program.gl).render(moderngl.TRIANGLES, vertices=draw.count, first=draw.first)
-            for unit, sampler in samplers:
-                sampler.clear(unit)
-            gpu.profile.count("draws")
-            gpu.profile.count("triangles", draw.count // 3)
+        run(target, "==" if nearest_first else "<", defines)
+
+
+def _draw_all(
+    gpu: Gpu, scene: GpuScene, view: Projection, lights: Lights, *, reject: str | None, geometry: str | None,
+    textures: Textures, blocks: Blocks, values: Mapping[str, object], defines: Mapping[str, object],
+) -> None:  # fmt: skip
+    """All draws that can be seen, into what is bound."""
+    values = {**values, "clip_from_local": _column_major(view.clip_from_local), "eye": tuple(view.eye)}
+    if reject is not None:
+        defines = {**defines, "HAS_REJECT": 1, "REJECT": reject}
+    stages = ["render/scene.vert", *([geometry] if geometry else []), "render/scene.frag"]
+    for draw in scene.draws:
+        if not _visible(draw, view.clip_from_local):
+            gpu.profile.count("draws culled")
+            continue
+        material = scene.materials.items[draw.material]
+        all_blocks = {"Material": material.block, "Lights": lights.block, **blocks}
+        all_defines = {**material.features, **lights.defines, **defines}
+        program = gpu.shaders.program(*stages, defines=all_defines, blocks=block_texts(all_blocks))
+        _set_culling(gpu.ctx, material.double_sided)
+        named = {name: texture for name, (texture, _) in material.textures.items()}
+        if "environment_map" in program.samplers:
+            named |= lights.textures
+        bind(gpu, program, {**named, **textures}, all_blocks, values)
+        samplers = list(enumerate(sampler for _, sampler in material.textures.values()))
+        for unit, sampler in samplers:
+            sampler.use(unit)
+        scene.array(program.gl).render(moderngl.TRIANGLES, vertices=draw.count, first=draw.first)
+        for unit, sampler in samplers:
+            sampler.clear(unit)
+        gpu.profile.count("draws")
+        gpu.profile.count("triangles", draw.count // 3)
     gpu.profile.count("geometry passes")
 
 

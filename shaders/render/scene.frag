@@ -3,7 +3,8 @@
 // A pass that wants other than the nearest surface names a file in the define REJECT, which declares
 //     bool reject(float inverse_depth, ivec2 pixel)
 // and says which fragments to leave out. One that wants surfaces instead of light, to shade them later, defines SURFACES:
-// the colour is then the base colour, and normal, roughness, emission, metalness and occlusion follow the depth.
+// the colour is then the base colour, and normal, roughness, emission, metalness and occlusion follow the depth. One that
+// wants nothing but depth, to find out first which fragments need be shaded at all, defines DEPTH_ONLY.
 in Vertex
 {
     vec3 position;
@@ -13,15 +14,19 @@ in Vertex
 } vertex;
 
 #include "include/surface.glsl"
-#if !defined(UNLIT) && !defined(SURFACES)
+#if !defined(UNLIT) && !defined(SURFACES) && !defined(DEPTH_ONLY)
 #include "include/shading.glsl"
 #endif
 #include <REJECT>
 
 uniform vec3 eye;  // lens centre or lens sample, local space
 
+#ifdef DEPTH_ONLY
+layout(location = 0) out float inverse_depth;
+#else
 layout(location = 0) out vec4 color;
 layout(location = 1) out float inverse_depth;
+#endif
 #ifdef SURFACES
 layout(location = 2) out vec4 normal_roughness;
 layout(location = 3) out vec4 emissive_metallic;
@@ -43,11 +48,15 @@ void main()
 #ifdef HAS_REJECT
     if (reject(inverse_depth, ivec2(gl_FragCoord.xy))) discard;
 #endif
+#if !defined(DEPTH_ONLY) || defined(ALPHA_TEST)
     Surface surface = read_surface();
+#endif
 #ifdef ALPHA_TEST
     if (surface.alpha < material.alpha_cutoff) discard;
 #endif
-#if defined(SURFACES) && defined(UNLIT)
+#if defined(DEPTH_ONLY)
+    return;
+#elif defined(SURFACES) && defined(UNLIT)
     // Without a normal and with everything occluded, shading leaves the emission alone.
     color = vec4(0.0, 0.0, 0.0, 1.0);
     normal_roughness = vec4(0.0, 0.0, 0.0, 1.0);
