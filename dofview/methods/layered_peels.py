@@ -40,8 +40,9 @@ class Peels:
         self, shader: str, into: Image, layer: Layer, *, values: dict | None = None, reach: float = 0.0, **how: object
     ) -> None:
         """Run a shader that includes `matte.glsl` for `layer`, whose filter reaches `reach` px."""
-        how["defines"] = {**self.defines, **how.get("defines", {})}
-        values = {"start": self.start, **(values or {}), **self._values(layer), "reach": reach}
+        presence = {"PRESENCE": 1} if reach > 0.0 and "PAPER" not in self.defines else {}
+        how["defines"] = {**self.defines, **presence, **how.get("defines", {})}
+        values = {"start": self.start, **(values or {}), **self._values(layer), **({"reach": reach} if presence else {})}
         self.recipe.draw(shader, into, values=values, **self.textures, **how)
 
     def final(self, focus: Layer, sides: dict[str, Image], *, fill: bool) -> Image:
@@ -70,7 +71,7 @@ class Peels:
         return filled
 
     def _values(self, layer: Layer) -> dict[str, object]:
-        return {"anchors": layer.anchors, "background": self.background, "reach": 0.0}
+        return {"anchors": layer.anchors, "background": self.background}
 
     def _pack(self, peels: Sequence[Surfaces]) -> dict[str, Image]:
         """Inverse depths of four peels in each texel."""

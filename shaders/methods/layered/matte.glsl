@@ -39,7 +39,9 @@ uniform sampler2D color6;
 uniform sampler2D color7;
 #endif
 uniform vec4 anchors;  // inverse depths z_(k-2), z_(k-1), z_k, z_(k+1) of layer k, falling
+#ifdef PRESENCE
 uniform float reach;  // px: how far the filter carries what is in this layer
+#endif
 uniform vec4 background;  // alpha 0: it cannot be seen, and what lies behind the last surface does not matter
 
 struct Surface
@@ -103,6 +105,7 @@ float tail(float inverse_depth, float before)
     return before >= anchors.y ? share : float(share > 0.0);
 }
 
+#ifdef PRESENCE
 // 1 inside a surface, towards 0 where what is around a pixel lies farther than it by a quarter of the interval.
 float presence(ivec2 pixel, float inverse_depth)
 {
@@ -116,11 +119,28 @@ float presence(ivec2 pixel, float inverse_depth)
     }
     return smoothstep(0.3, 1.0, found / 8.0);
 }
+#endif
+
+// How present the first surface of the tail's interval is; what comes behind it in there has a share of 0 or 1. Asked
+// once for all surfaces of a pixel, because a software rasteriser runs both sides of every branch.
+float first_presence(ivec2 pixel, Surface surfaces[PEELS])
+{
+#ifdef PRESENCE
+    float before = 3e38, first = 0.0;
+    for (int m = 0; m < PEELS; ++m) {
+        if (before >= anchors.y) first = surfaces[m].inverse_depth;
+        before = surfaces[m].inverse_depth;
+    }
+    return presence(pixel, first);
+#else
+    return 1.0;
+#endif
+}
 
 // What a tail covers in the back buffer; its first tenth without a step, or a silhouette would get a halo at once.
-float covering(ivec2 pixel, float inverse_depth, float share)
+float covering(float share, float present)
 {
-    return mix(share, min(10.0 * share, 1.0), presence(pixel, inverse_depth));
+    return mix(share, min(10.0 * share, 1.0), present);
 }
 
 // The layer by itself, premultiplied.
@@ -129,14 +149,14 @@ vec4 layer(ivec2 pixel)
     Surface surfaces[PEELS];
     fetch_surfaces(pixel, surfaces);
     vec4 sum = vec4(0.0);
-    float before = 3e38;
+    float before = 3e38, present = first_presence(pixel, surfaces);
     for (int m = 0; m < PEELS; ++m) {
         float z = surfaces[m].inverse_depth;
 #ifdef PAPER
         float omega = z >= anchors.z ? ramp(z, anchors.x, anchors.y) : m == 0 ? 1.0 - ramp(z, anchors.z, anchors.w) : 0.0;
 #else
         float omega = z > anchors.y ? 0.0
-            : z >= anchors.z        ? covering(pixel, z, tail(z, before))
+            : z >= anchors.z        ? covering(tail(z, before), present)
                                     : head(z, before);
 #endif
         sum += (1.0 - sum.a) * omega * surfaces[m].color;
