@@ -42,7 +42,7 @@ class Peels:
         """Run a shader that includes `matte.glsl` for `layer`, whose filter reaches `reach` px."""
         presence = {"PRESENCE": 1} if reach > 0.0 and "PAPER" not in self.defines else {}
         how["defines"] = {**self.defines, **presence, **how.get("defines", {})}
-        values = {"start": self.start, **(values or {}), **self._values(layer), **({"reach": reach} if presence else {})}
+        values = {"start": self.start, **(values or {}), **self._values(layer)} | ({"reach": reach} if presence else {})
         self.recipe.draw(shader, into, values=values, **self.textures, **how)
 
     def final(self, focus: Layer, sides: dict[str, Image], *, fill: bool) -> Image:

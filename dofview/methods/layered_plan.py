@@ -137,12 +137,8 @@ def finishing(layer: Layer) -> float:
 
 
 def entry_variance(level: int) -> float:
-    """Variance per axis of bringing a layer to `level`, px²: the mean of 2 × 2 pixels, then [1 3 3 1] / 8.
-
-    The mean costs no more than the layer at full size and moves a point by half a pixel at most. The second halving
-    moves nothing; a mean of 4 × 4 pixels would move points by up to 1.5 px, to and fro as they move.
-    """
-    return (0.0, 0.25, 0.25 + 0.75 * 4.0)[level]
+    """Variance per axis of bringing a layer to `level` by [1 3 3 1] / 8, px²: 3/4 of each finer texel²."""
+    return sum(0.75 * 4**finer for finer in range(level))
 
 
 def expand_variance(level: int, to: int) -> float:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dofview.gl.tiles import TILE, coarser, grown
-from dofview.methods.layered_plan import MOST_HALVINGS, Layer, Plan, cascade, finishing
+from dofview.methods.layered_plan import Layer, Plan, cascade, finishing
 
 CELL = 8
 SLICES = 128
@@ -67,10 +67,9 @@ class Step:
     """A layer joins the buffer and the buffer is filtered; all tiles are (rows, columns) bool.
 
     `sigma` is the filter, in texels of the layer's level. The layer joins in the tiles `own`; in the tiles `others` the
-    buffer is only carried on (at a quarter of the size in all that hold something, and the layer is added to it then);
-    after the filter it is wanted in `after`. The tiles `finished` have no more to come from
-    layers of finer levels: there the buffer is blurred by `finish` instead and enlarged. `rest` are those that come
-    through all steps.
+    buffer is only carried on (at a smaller size in all that hold something, and the layer is added to it then); after
+    the filter it is wanted in `after`. The tiles `finished` have no more to come from layers of finer levels: there the
+    buffer is blurred by `finish` instead and enlarged. `rest` are those that come through all steps.
     """
 
     layer: Layer
@@ -115,7 +114,7 @@ def steps(layers: Sequence[Layer], content: Content, window: Window | None) -> l
         reach = REACH * layer.sigma + (2 << layer.level)
         region = region & window.tiles(region.shape, reach) if skip else region
         own = (tiled(cells[number]) if skip else np.ones_like(region)) & region
-        others = held[number] & region & (~own | (layer.level == MOST_HALVINGS))
+        others = held[number] & region & (~own | (layer.level > 0))
         finished = np.zeros_like(region)
         if number + 1 < len(layers) and layers[number + 1].level < layer.level:
             near = np.zeros_like(cells[0])

@@ -14,7 +14,7 @@ from dofview.gl.pyramids import expand, level_size, reduce
 from dofview.gl.targets import Image
 from dofview.gl.tiles import Tiles, grown, upload
 from dofview.methods.layered_peels import NOTHING, Color, Peels
-from dofview.methods.layered_plan import MOST_HALVINGS, Layer
+from dofview.methods.layered_plan import Layer
 from dofview.methods.layered_regions import Step, steps
 
 Weights = tuple[float, ...]
@@ -23,6 +23,8 @@ MOST_TAPS = 32
 """Weights of a filter that a joining layer applies on the way; a wider one is a pass of its own."""
 
 UNCHANGED: Weights = (1.0, 0.0)
+
+NEVER = object()
 
 
 class Side:
@@ -38,6 +40,7 @@ class Side:
         self.inspect = inspect
         self.start = peels.start if name == "back" else NOTHING
         self._cleared: set[Image] = set()
+        self._filled: Tiles | None | object = NEVER
 
     def cascaded(self) -> Image:
         """Blur recursively: a layer joins the buffer, the buffer is blurred, the next one joins (GPU Pro 4, p. 204)."""
@@ -118,35 +121,47 @@ class Side:
         """Draw the layer of `step` under or over what `across` holds, filtered along y by `weights`, or `coarse`, or
         the start.
 
-        At a quarter of the size `into` holds that already, and the layer comes to it by way of half the size.
+        At a smaller size `into` holds that already. What the layer adds to it is drawn at full size and reduced by
+        filters that move nothing; a mean of 2 × 2 pixels would move a point by half a pixel along each axis.
         """
-        layer = step.layer
-        added = layer.level == MOST_HALVINGS
-        target = self._image("added", 1) if added else into
-        buffered = (into if across else None) if added else across or coarse
-        defines: dict[str, object] = {"LEVEL": 2 ** min(layer.level, 1), "SOURCE": 0}
+        layer, before = step.layer, across or coarse
+        added, under = layer.level > 0, self.name == "front" and not alone
+        defines: dict[str, object] = {"SOURCE": 0, **({"FRONT": 1} if under else {}), **({"ADDED": 1} if added else {})}
         values: dict[str, object] = {"start": NOTHING if alone else self.start}
-        if buffered:
-            defines["SOURCE"] = 1 if across and not added else 2
+        if added and before:
+            before = into if under else None
+        if before and added:
+            defines |= {"SOURCE": 2, "LEVEL": layer.level}
+        elif before:
+            defines |= {"SOURCE": 1, "TAPS": len(weights)} if across else {"SOURCE": 3}
         if defines["SOURCE"] == 1:
-            defines["TAPS"] = len(weights)
             values["weights"] = np.array(weights, np.float32).tobytes()
-        if self.name == "front" and not alone:
-            defines["FRONT"] = 1
-        if added:
-            defines["ADDED"] = 1
-        reach = 1.5 * step.sigma * 2**layer.level
+        target = self._emptied(places.own) if added else into
         self.peels.draw(
-            "join.frag", target, layer, reach=reach, defines=defines, values=values,
-            within=_at(places.own, min(layer.level, 1)),
-            clear=NOTHING if added else self._clear(into), **({"buffered": buffered} if buffered else {}),
+            "join.frag", target, layer, reach=1.5 * step.sigma * 2**layer.level, defines=defines, values=values,
+            within=places.own, clear=not added and self._clear(into), **({"buffered": before} if before else {}),
         )  # fmt: skip
         if added:
-            with self.gpu.profile.section("layered/join"):
-                reduce(
-                    self.gpu, target, into, blend=ADD if self.name == "front" or alone else OVER,
-                    within=_at(places.near, MOST_HALVINGS), clear=self._clear(into),
-                )  # fmt: skip
+            self._reduce(target, layer.level, into, places.near, ADD if self.name == "front" or alone else OVER)
+
+    def _emptied(self, own: Tiles | None) -> Image:
+        """The image, of full size, for what a layer adds in the tiles `own`: with nothing of the former layer's."""
+        target = self.recipe.image(f"{self.name} added", linear=True)
+        if self._filled is NEVER:
+            self.gpu.targets.framebuffer((target,)).clear()
+        else:
+            self.recipe.draw("pass/clear.frag", target, within=self._filled)
+        self._filled = own
+        return target
+
+    def _reduce(self, fine: Image, level: int, into: Image, tiles: Tiles | None, blend: tuple) -> None:
+        """Bring `fine`, of full size, to `level` and blend it into `into`."""
+        with self.gpu.profile.section("layered/join"):
+            for coarser in range(1, level):
+                half = self._image("added half", coarser)
+                reduce(self.gpu, fine, half, within=_at(tiles, coarser), clear=NOTHING)
+                fine = half
+            reduce(self.gpu, fine, into, blend=blend, within=_at(tiles, level), clear=self._clear(into))
 
     def _convolved(
         self, source: Image, what: str, level: int, weights: Weights, axis: tuple[int, int], tiles: Tiles | None,

@@ -1,10 +1,11 @@
-// One step of the recursion: a layer joins the buffer, at full size or, where the blur to come hides the difference, at
-// one texel for LEVEL x LEVEL pixels. What it joins is, by SOURCE,
+// One step of the recursion: a layer joins the buffer. What it joins is, by SOURCE,
 //     0  what a buffer holds before its first layer,
 //     1  the buffer blurred across, which is blurred along y here,
-//     2  the buffer at half the size, which is enlarged here by the biquadratic B-spline.
+//     2  the buffer at one texel for 2^LEVEL x 2^LEVEL pixels,
+//     3  the buffer at half the size, which is enlarged here by the biquadratic B-spline.
 //
-// With ADDED it is only what the layer adds to the buffer in front, or what is to be blended over the one behind.
+// With ADDED it is only what the layer adds to the buffer in front, or what is to be blended over the one behind, to be
+// reduced to the buffer's size.
 #include "methods/layered/matte.glsl"
 
 uniform sampler2D buffered;
@@ -27,7 +28,9 @@ vec4 before(ivec2 texel)
             * (texelFetch(buffered, ivec2(texel.x, max(texel.y - i, 0)), 0)
                 + texelFetch(buffered, ivec2(texel.x, min(texel.y + i, last)), 0));
     return sum;
-#else
+#elif SOURCE == 2
+    return texelFetch(buffered, texel >> LEVEL, 0);
+#elif SOURCE == 3
     return texture(buffered, gl_FragCoord.xy * 0.5 / vec2(textureSize(buffered, 0)));
 #endif
 }
@@ -53,14 +56,5 @@ vec4 joined(vec4 buffer, ivec2 pixel)
 void main()
 {
     ivec2 texel = ivec2(gl_FragCoord.xy);
-    vec4 buffer = before(texel);
-#if LEVEL == 1
-    color = joined(buffer, texel);
-#else
-    ivec2 from = texel * LEVEL, to = min(from + LEVEL, textureSize(color0, 0));
-    color = vec4(0.0);
-    for (int y = from.y; y < to.y; ++y)
-        for (int x = from.x; x < to.x; ++x) color += joined(buffer, ivec2(x, y));
-    color /= float((to.x - from.x) * (to.y - from.y));
-#endif
+    color = joined(before(texel), texel);
 }
