@@ -38,7 +38,8 @@ class Profile:
 
     def count(self, name: str, amount: int = 1) -> None:
         """Add to a counter: passes, fragments, draws, skipped work."""
-        self.counts[name] += amount
+        if amount:
+            self.counts[name] += amount
 
     @contextmanager
     def section(self, name: str) -> Iterator[None]:

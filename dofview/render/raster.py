@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import moderngl
 import numpy as np
@@ -13,7 +14,7 @@ from dofview.gl.context import Gpu
 from dofview.gl.passes import Blocks, Textures, bind, block_texts
 from dofview.gl.targets import Image
 from dofview.render.lights import Lights
-from dofview.render.upload import Draw, GpuScene
+from dofview.render.upload import GpuScene
 from dofview.scene.camera import Camera
 
 
@@ -65,20 +66,33 @@ def projection(
     return Projection(matrix @ view, eye)
 
 
+class Runs(NamedTuple):
+    """What to draw: (material, first index, count) each, and how many pieces of the scene are not among it."""
+
+    ranges: list[tuple[int, int, int]]
+    culled: int
+
+
+def in_view(scene: GpuScene, *views: Projection) -> Runs:
+    """What of `scene` the views can reach, or any view between them."""
+    seen = scene.visible(*(view.clip_from_local for view in views))
+    return Runs(scene.runs(seen), len(scene.draws) - len(seen))
+
+
 def draw_scene(
     gpu: Gpu, scene: GpuScene, view: Projection, into: Sequence[Image], *, lights: Lights,
     background: tuple[float, float, float] = (0.0, 0.0, 0.0), background_alpha: float = 0.0, lod_bias: float = 0.0,
     behind: Image | None = None, reject: str | None = None, geometry: str | None = None,
     textures: Textures | None = None, blocks: Blocks | None = None, values: Mapping[str, object] | None = None,
     defines: Mapping[str, object] | None = None, framebuffer: moderngl.Framebuffer | None = None,
-    passed: moderngl.Query | None = None,
+    passed: moderngl.Query | None = None, draws: Runs | None = None,
 ) -> None:  # fmt: skip
     """Draw the scene's nearest surfaces into `into`: colour, then inverse depth (0 where nothing is).
 
     `behind`, an image of inverse depths, leaves out what is not farther than it, and everything where it is 0. `reject`
     names the GLSL file of another test that leaves fragments out (shaders/render/scene.frag); `textures`, `blocks` and
     `values` are what it reads. `geometry` names a geometry shader and `framebuffer` its layered target. `passed` counts
-    the samples that were drawn.
+    the samples that were drawn. `draws` are what to draw where that is known; else what the view can reach.
     """
     target = framebuffer or gpu.targets.framebuffer(into, depth=True)
     _clear(gpu, target, into, (*background, background_alpha))
@@ -92,11 +106,12 @@ def draw_scene(
         gpu.ctx.enable_only(moderngl.DEPTH_TEST)
         gpu.ctx.depth_func = depth_func
         _draw_all(
-            gpu, scene, view, lights, reject=reject, geometry=geometry, textures=textures or {}, blocks=blocks or {},
-            values={"lod_bias": lod_bias, **(values or {})}, defines=defines,
+            gpu, scene, view, seen, lights, reject=reject, geometry=geometry, textures=textures or {},
+            blocks=blocks or {}, values={"lod_bias": lod_bias, **(values or {})}, defines=defines,
         )  # fmt: skip
 
-    size, defines = into[0].size, dict(defines or {})
+    size, defines, seen = into[0].size, dict(defines or {}), in_view(scene, view) if draws is None else draws
+    gpu.profile.count("pieces culled", seen.culled)
     nearest_first = reject is not None and framebuffer is None and gpu.software
     if nearest_first:
         # It goes on shading fragments that it has discarded, and most are. Only a failed depth test stops it.
@@ -106,19 +121,17 @@ def draw_scene(
 
 
 def _draw_all(
-    gpu: Gpu, scene: GpuScene, view: Projection, lights: Lights, *, reject: str | None, geometry: str | None,
-    textures: Textures, blocks: Blocks, values: Mapping[str, object], defines: Mapping[str, object],
+    gpu: Gpu, scene: GpuScene, view: Projection, draws: Runs, lights: Lights, *, reject: str | None,
+    geometry: str | None, textures: Textures, blocks: Blocks, values: Mapping[str, object],
+    defines: Mapping[str, object],
 ) -> None:  # fmt: skip
-    """All draws that can be seen, into what is bound."""
+    """Draw `draws` into what is bound."""
     values = {**values, "clip_from_local": _column_major(view.clip_from_local), "eye": tuple(view.eye)}
     if reject is not None:
         defines = {**defines, "HAS_REJECT": 1, "REJECT": reject}
     stages = ["render/scene.vert", *([geometry] if geometry else []), "render/scene.frag"]
-    for draw in scene.draws:
-        if not _visible(draw, view.clip_from_local):
-            gpu.profile.count("draws culled")
-            continue
-        material = scene.materials.items[draw.material]
+    for number, first, count in draws.ranges:
+        material = scene.materials.items[number]
         all_blocks = {"Material": material.block, "Lights": lights.block, **blocks}
         all_defines = {**material.features, **lights.defines, **defines}
         program = gpu.shaders.program(*stages, defines=all_defines, blocks=block_texts(all_blocks))
@@ -130,11 +143,11 @@ def _draw_all(
         samplers = list(enumerate(sampler for _, sampler in material.textures.values()))
         for unit, sampler in samplers:
             sampler.use(unit)
-        scene.array(program.gl).render(moderngl.TRIANGLES, vertices=draw.count, first=draw.first)
+        scene.array(program.gl).render(moderngl.TRIANGLES, vertices=count, first=first)
         for unit, sampler in samplers:
             sampler.clear(unit)
         gpu.profile.count("draws")
-        gpu.profile.count("triangles", draw.count // 3)
+        gpu.profile.count("triangles", count // 3)
     gpu.profile.count("geometry passes")
 
 
@@ -172,14 +185,3 @@ def _set_culling(ctx: moderngl.Context, double_sided: bool) -> None:
 
 def _column_major(matrix: np.ndarray) -> bytes:
     return np.ascontiguousarray(matrix.T, dtype=np.float32).tobytes()
-
-
-def _visible(draw: Draw, clip_from_local: np.ndarray) -> bool:
-    """Whether the draw's box can reach the picture: false when all its corners lie beyond one clip plane."""
-    low, high = draw.bounds
-    corners = np.array(
-        [[x, y, z, 1.0] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
-    )
-    clip = corners @ clip_from_local.T
-    x, y, w = clip[:, 0], clip[:, 1], clip[:, 3]
-    return not any(np.all(beyond) for beyond in (x > w, x < -w, y > w, y < -w, w <= 0.0))

@@ -14,7 +14,7 @@ from dofview.gl.passes import ADD, draw
 from dofview.gl.targets import Image
 from dofview.render.compare import psnr
 from dofview.render.frame import Frame
-from dofview.render.raster import depth_range, draw_scene, projection
+from dofview.render.raster import Projection, Runs, depth_range, draw_scene, in_view, projection
 from dofview.sampling import lens_samples, pixel_jitter
 
 BATCH = 64
@@ -46,6 +46,7 @@ class Reference:
         self._estimate_at = 0
         self._points: list = []
         self._near_far = depth_range(frame.scene, frame.camera)
+        self._draws = self._seen_through_the_lens()
 
     def add(self, count: int) -> None:
         """Render `count` more views into the sum."""
@@ -94,16 +95,31 @@ class Reference:
     def _draw_view(self, into: Image) -> None:
         frame = self.frame
         lens_point, jitter = self._point(self.views)
-        view = projection(
-            frame.scene, frame.camera, frame.inner_size, frame.guard, near_far=self._near_far,
-            lens_point=(lens_point[0] * frame.lens.radius, lens_point[1] * frame.lens.radius),
-            focus_distance=frame.lens.focus_distance, jitter_px=jitter,
-        )  # fmt: skip
+        view = self._seen_from((lens_point[0] * frame.lens.radius, lens_point[1] * frame.lens.radius), jitter)
         # Views that move inside the pixel antialias textures by themselves; mipmaps would blur them once more.
         bias = -0.5 * math.log2(self.total or 64) if self.antialias else 0.0
         draw_scene(
             frame.gpu, frame.scene, view, (into,), lights=frame.lights, background=frame.background, lod_bias=bias,
-            background_alpha=1.0,
+            background_alpha=1.0, draws=self._draws,
+        )  # fmt: skip
+
+    def _seen_through_the_lens(self) -> Runs:
+        """What is inside the union of all views' frusta: found once, for they hardly differ.
+
+        Clip coordinates are affine in the lens point, x in its x and y in its y, so the corners of a square around the
+        lens and of the pixel bound all views.
+        """
+        lens = self.frame.lens
+        extent = lens.radius * (8.0 * lens.sigma_fraction if lens.distribution == "gaussian" else math.sqrt(2.0))
+        corners = [((e, e), (j, j)) for e in (extent, -extent) for j in (0.5, -0.5)]
+        return in_view(self.frame.scene, *(self._seen_from(e, j) for e, j in corners))
+
+    def _seen_from(self, lens_point: tuple[float, float], jitter: tuple[float, float] = (0.0, 0.0)) -> Projection:
+        """The view from a point of the lens, scene units from its centre."""
+        frame = self.frame
+        return projection(
+            frame.scene, frame.camera, frame.inner_size, frame.guard, near_far=self._near_far, lens_point=lens_point,
+            focus_distance=frame.lens.focus_distance, jitter_px=jitter,
         )  # fmt: skip
 
     def _point(self, index: int) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -6,6 +6,7 @@ metres away keeps its detail in float32. Draws of one material are merged, in pi
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import moderngl
@@ -13,12 +14,13 @@ import numpy as np
 
 from dofview.gl.context import Gpu
 from dofview.render.materials import MaterialSet
-from dofview.scene.model import Instance, Primitive, Scene, instance_bounds
+from dofview.scene.model import Instance, Primitive, Scene
 
 VERTEX_FORMAT = "3f 3f 2f 2f 4f"
 VERTEX_NAMES = ("in_position", "in_normal", "in_texcoord0", "in_texcoord1", "in_color")
 _FLOATS = 14
-PIECE_TRIANGLES = 16384
+PIECE_TRIANGLES = 2048
+"""Pieces are this large to be left out of a picture one by one; those in it that lie together are drawn at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +43,10 @@ class GpuScene:
         vertices, triangles, self.draws = _bake(scene, self.origin)
         self._vertices = gpu.ctx.buffer(vertices.tobytes()) if len(vertices) else None
         self._indices = gpu.ctx.buffer(triangles.tobytes()) if len(triangles) else None
+        self.culling = True
+        """Whether draws are left out that cannot reach a picture; without, to show that they cannot."""
+        self._corners = _corners(self.draws)
+        self._ranges = np.array([(d.material, d.first, d.count) for d in self.draws], np.int64).reshape(-1, 3)
         self._ctx = gpu.ctx
         self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
 
@@ -48,6 +54,29 @@ class GpuScene:
     def local_bounds(self) -> np.ndarray:
         """(2, 3) float64 corners relative to `origin`."""
         return self.scene.bounds - self.origin
+
+    def visible(self, *clips_from_local: np.ndarray) -> np.ndarray:
+        """Numbers of the draws whose boxes can reach one of the pictures: not all corners lie beyond one clip plane.
+
+        Of several (4, 4) matrices every view between them counts too: a box beyond the same plane in all of them.
+        """
+        if not self.culling:
+            return np.arange(len(self.draws))
+        beyond = np.ones((5, len(self.draws)), bool)
+        for clip_from_local in clips_from_local:
+            x, y, _, w = np.moveaxis(self._corners @ clip_from_local.T, 2, 0)
+            beyond &= [side.all(axis=1) for side in (x > w, x < -w, y > w, y < -w, w <= 0.0)]
+        return np.flatnonzero(~beyond.any(axis=0))
+
+    def runs(self, numbers: np.ndarray) -> list[tuple[int, int, int]]:
+        """Material, first index and count of the draws `numbers`, ascending, those that lie together joined."""
+        if not len(numbers):
+            return []
+        material, first, count = self._ranges[numbers].T
+        starts = np.flatnonzero(np.r_[True, (np.diff(material) != 0) | (first[1:] != first[:-1] + count[:-1])])
+        return list(
+            zip(*(x.tolist() for x in (material[starts], first[starts], np.add.reduceat(count, starts))), strict=True)
+        )
 
     def array(self, program: moderngl.Program) -> moderngl.VertexArray:
         """Return the scene's vertex array for `program`, which may use any subset of the attributes."""
@@ -70,6 +99,14 @@ class GpuScene:
         self.materials.release()
 
 
+def _corners(draws: tuple[Draw, ...]) -> np.ndarray:
+    """(n, 8, 4) float64 homogeneous corners of all boxes."""
+    corners = np.ones((len(draws), 8, 4))
+    for number, draw in enumerate(draws):
+        corners[number, :, :3] = np.stack(np.meshgrid(*draw.bounds.T, indexing="ij"), axis=-1).reshape(8, 3)
+    return corners
+
+
 def _bake(scene: Scene, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[Draw, ...]]:
     vertices: list[np.ndarray] = []
     triangles: list[np.ndarray] = []
@@ -80,16 +117,25 @@ def _bake(scene: Scene, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, tup
     for instance in drawn:
         primitive = scene.primitives[instance.primitive]
         vertices.append(_bake_vertices(primitive, instance, origin))
-        triangles.append(_bake_triangles(primitive, instance) + np.uint32(base))
-        bounds = instance_bounds(primitive, instance.matrix)
-        assert bounds is not None
-        _append_draw(draws, Draw(primitive.material, first, triangles[-1].size, bounds - origin))
+        corners = _bake_triangles(primitive, instance)
+        triangles.append(corners + np.uint32(base))
+        for draw in _pieces(primitive.material, first, vertices[-1], corners):
+            _append_draw(draws, draw)
         base += len(primitive.positions)
         first += triangles[-1].size
     empty = np.zeros((0, _FLOATS), np.float32), np.zeros((0, 3), np.uint32)
     if not draws:
         return *empty, ()
     return np.concatenate(vertices), np.concatenate(triangles), tuple(draws)
+
+
+def _pieces(material: int, first: int, vertices: np.ndarray, triangles: np.ndarray) -> Iterator[Draw]:
+    """`triangles` in pieces of at most `PIECE_TRIANGLES`, in their order, with the box of each."""
+    for start in range(0, len(triangles), PIECE_TRIANGLES):
+        piece = triangles[start : start + PIECE_TRIANGLES]
+        positions = vertices[piece.reshape(-1), :3]
+        bounds = np.array([positions.min(axis=0), positions.max(axis=0)], np.float64)
+        yield Draw(material, first + 3 * start, piece.size, bounds)
 
 
 def _append_draw(draws: list[Draw], draw: Draw) -> None:
