@@ -215,12 +215,12 @@ def _rows(text: str) -> Iterator[Row]:
             )
         last = time_s
         x, y = (_number(row[name], f"{where}: {name}") for name in ("x", "y"))
-        seen = x is not None and y is not None and 0.0 <= x <= 1.0 and 0.0 <= y <= 1.0
+        seen = (x, y) if x is not None and y is not None and 0.0 <= x <= 1.0 and 0.0 <= y <= 1.0 else None
         distance = _number(row.get("focus_distance"), f"{where}: focus_distance", finite=False)
         if distance is not None and not distance > 0.0:
             raise ValueError(f"{where}: focus_distance is {distance}; accepted: a number above 0, or inf")
         frozen = bool(_number(row.get("frozen"), f"{where}: frozen"))
-        yield Row(time_s, Look((x, y) if seen else None, frozen), distance)
+        yield Row(time_s, Look(seen, frozen), distance)
 
 
 def _number(text: str | None, where: str, finite: bool = True) -> float | None:

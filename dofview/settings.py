@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import stat
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
@@ -28,11 +28,14 @@ M = TypeVar("M", bound=BaseModel)
 Side = Annotated[int, Field(ge=1, le=LARGEST_SIDE)]
 Linear = Annotated[float, Field(ge=0.0, le=1e4, allow_inf_nan=False)]
 
-MethodParams = create_model(
-    "MethodParams", __config__=ConfigDict(frozen=True, extra="forbid"),
-    __doc__="The parameters of every method, by name.",
-    **{name: (method(name).Params, method(name).Params()) for name in METHODS},
-)  # type: ignore[call-overload]  # fmt: skip
+if TYPE_CHECKING:
+    MethodParams = Any  # made from a list, so its fields are not known before it runs
+else:
+    MethodParams = create_model(
+        "MethodParams", __config__=ConfigDict(frozen=True, extra="forbid"),
+        __doc__="The parameters of every method, by name.",
+        **{name: (method(name).Params, method(name).Params()) for name in METHODS},
+    )  # fmt: skip
 
 
 class ImageSettings(BaseModel):
@@ -57,7 +60,7 @@ class Settings(BaseModel):
     camera: Camera = Camera()
     lens: Lens = Lens()
     method: str = "accumulation"
-    params: MethodParams = MethodParams()  # type: ignore[valid-type]
+    params: MethodParams = MethodParams()
     image: ImageSettings = ImageSettings()
     display: Display = Display()
     light: Lighting = Lighting()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from typing import Any
 
 import moderngl
 
@@ -62,7 +63,7 @@ class Gpu:
 
 def create_headless() -> Gpu:
     """Make a context without a window: through EGL on Linux, the system's own way elsewhere."""
-    settings = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+    settings: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
     # moderngl raises bare Exception for a missing library, device, driver or version: all mean no usable OpenGL.
     try:
         ctx = moderngl.create_context(standalone=True, require=REQUIRED, **settings)

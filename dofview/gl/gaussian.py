@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 
 from dofview.gl.context import Gpu
-from dofview.gl.passes import draw
+from dofview.gl.passes import Color, draw
 from dofview.gl.pyramids import Analysis, expand, level_size, reduce
 from dofview.gl.targets import Image
 from dofview.gl.tiles import Tiles
@@ -63,7 +63,7 @@ def paired(weights: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
 
 def convolve(
     gpu: Gpu, source: Image, into: Image, weights: tuple[float, ...], axis: tuple[int, int], *, bilinear: bool = False,
-    within: Tiles | None = None, clear: bool | tuple[float, ...] = False,
+    within: Tiles | None = None, clear: bool | Color = False,
 ) -> None:  # fmt: skip
     """Filter along one `axis`, (1, 0) or (0, 1); beyond the border the last texel is repeated.
 

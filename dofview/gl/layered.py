@@ -7,6 +7,7 @@ every window system. Where they cannot be found, `DepthArray.available` says so 
 from __future__ import annotations
 
 import ctypes
+from typing import Any
 
 import moderngl
 
@@ -20,7 +21,7 @@ _FRAMEBUFFER = 0x8D40
 _DEPTH_ATTACHMENT = 0x8D00
 _COMPLETE = 0x8CD5
 _INT, _UINT, _POINTER = ctypes.c_int, ctypes.c_uint, ctypes.c_void_p
-_FUNCTIONS = {
+_FUNCTIONS: dict[str, tuple[Any, ...]] = {
     "glGenTextures": (None, _INT, _POINTER),
     "glDeleteTextures": (None, _INT, _POINTER),
     "glBindTexture": (None, _UINT, _UINT),
@@ -67,7 +68,7 @@ class DepthArray:
         self._gl["glDeleteTextures"](1, ctypes.byref(name))
 
 
-def _functions(ctx: moderngl.Context) -> dict[str, ctypes._CFuncPtr]:
+def _functions(ctx: moderngl.Context) -> dict[str, Any]:
     """The functions by name; empty when one is missing."""
     load = getattr(getattr(ctx.mglo, "_context", None), "load", None)
     addresses = {name: load(name) for name in _FUNCTIONS} if load else {}

@@ -18,8 +18,10 @@ ADD = (moderngl.ONE, moderngl.ONE)
 OVER = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
 UNDER = (moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE)
 
+Color = tuple[float, float, float, float]
 Blocks = Mapping[str, BaseModel]
-Textures = Mapping[str, Image | moderngl.Texture | moderngl.TextureArray]
+AnyTexture = Image | moderngl.Texture | moderngl.TextureArray
+Textures = Mapping[str, AnyTexture]
 
 
 def bind(gpu: Gpu, program: Program, textures: Textures, blocks: Blocks, values: Mapping[str, object]) -> None:
@@ -57,7 +59,7 @@ def block_texts(blocks: Blocks) -> dict[str, str]:
 def draw(
     gpu: Gpu, shader: str, into: Image | Sequence[Image], *, textures: Textures | None = None,
     blocks: Blocks | None = None, values: Mapping[str, object] | None = None, defines: Defines | None = None,
-    blend: tuple | None = None, clear: bool | tuple[float, ...] = False,
+    blend: tuple | None = None, clear: bool | Color = False,
     viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None,
     vertex: str = "pass/fullscreen.vert", geometry: str | None = None, sprites: int | None = None,
     when: moderngl.Query | None = None,
@@ -77,7 +79,7 @@ def draw(
     vertices, fragments = 3, width * height
     if within is not None:
         vertex, vertices, fragments = "pass/tiles.vert", 6 * within.count, within.area >> 2 * within.level
-        extent = (width << within.level, height << within.level)
+        extent = width << within.level, height << within.level
         textures = {**(textures or {}), "tile_list": within.image}
         values = {**(values or {}), "tile_row": within.row, "tile_extent": extent}
     elif sprites is not None:
@@ -91,15 +93,15 @@ def draw(
     ctx.enable_only(moderngl.BLEND if blend else moderngl.NOTHING)
     if blend:
         ctx.blend_func = blend
-        ctx.blend_equation = moderngl.FUNC_ADD
+        ctx.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
     if clear:
-        framebuffer.clear(*(clear if isinstance(clear, tuple) else ()))
+        framebuffer.clear(color=clear if isinstance(clear, tuple) else (0.0, 0.0, 0.0, 0.0))
     if vertices == 0:
         return
     bind(gpu, program, textures or {}, blocks, values or {})
     if 0 not in program.arrays:
         program.arrays[0] = ctx.vertex_array(program.gl, [])
-    with when.crender if when else nullcontext():
+    with (when and when.crender) or nullcontext():
         program.arrays[0].render(moderngl.TRIANGLES, vertices=vertices)
     gpu.profile.count("passes")
     gpu.profile.count("sprites" if sprites else "fragments", sprites or fragments)

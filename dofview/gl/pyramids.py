@@ -14,7 +14,7 @@ from enum import StrEnum
 import numpy as np
 
 from dofview.gl.context import Gpu
-from dofview.gl.passes import draw
+from dofview.gl.passes import Color, draw
 from dofview.gl.targets import Image
 from dofview.gl.tiles import Tiles
 
@@ -59,7 +59,7 @@ def pyramid(gpu: Gpu, name: str, size: Size, levels: int, components: int = 4) -
 
 def reduce(
     gpu: Gpu, fine: Image, coarse: Image, analysis: Analysis = Analysis.SPLINE, *, blend: tuple | None = None,
-    within: Tiles | None = None, clear: bool | tuple[float, ...] = False,
+    within: Tiles | None = None, clear: bool | Color = False,
 ) -> None:  # fmt: skip
     """Write `coarse`, half the size of `fine` rounded up. `fine` must be fetched bilinearly (`linear=True`)."""
     draw(
@@ -68,9 +68,7 @@ def reduce(
     )  # fmt: skip
 
 
-def expand(
-    gpu: Gpu, coarse: Image, fine: Image, *, within: Tiles | None = None, clear: bool | tuple[float, ...] = False
-) -> None:
+def expand(gpu: Gpu, coarse: Image, fine: Image, *, within: Tiles | None = None, clear: bool | Color = False) -> None:
     """Write `fine`, of twice the size of `coarse`, by biquadratic B-splines."""
     draw(gpu, "pass/expand.frag", fine, textures={"coarse": coarse}, within=within, clear=clear)
 

@@ -10,6 +10,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import moderngl
 
@@ -91,7 +92,7 @@ def explain(message: str, source: Source) -> str:
 class Program:
     """A linked program with the names its source declares, so that a misspelt one is told from an unused one."""
 
-    gl: moderngl.Program
+    gl: Any  # moderngl.Program, whose members have one type for uniforms, blocks and attributes
     samplers: frozenset[str]
     values: frozenset[str]
     blocks: frozenset[str]
@@ -151,10 +152,10 @@ class ShaderLibrary:
         sources = {Path(p).suffix: flatten(p, defines, blocks, self._version) for p in paths}
         stages = {_STAGES[suffix]: source.text for suffix, source in sources.items()}
         try:
-            program = self._ctx.program(**stages)
+            program = self._ctx.program(**stages)  # type: ignore[arg-type]
         except moderngl.Error as error:
             message = str(error)
-            suffix = next((s for s, stage in _STAGES.items() if stage in message), paths and Path(paths[-1]).suffix)
+            suffix = next((s for s, stage in _STAGES.items() if stage in message), Path(paths[-1]).suffix)
             raise ShaderError(explain(message, sources.get(suffix, next(iter(sources.values()))))) from error
         text = "\n".join(source.text for source in sources.values())
         declared = [(m["type"], m["name"]) for m in _UNIFORM.finditer(text)]

@@ -36,10 +36,11 @@ class Image:
     def __init__(self, ctx: moderngl.Context, name: str, shape: Shape):
         self.name = name
         self.shape = shape
-        if shape.layers:
-            self.texture = ctx.texture_array((*shape.size, shape.layers), shape.components, dtype=shape.dtype)
-        else:
-            self.texture = ctx.texture(shape.size, shape.components, dtype=shape.dtype)
+        self.texture: moderngl.Texture | moderngl.TextureArray = (
+            ctx.texture_array((*shape.size, shape.layers), shape.components, dtype=shape.dtype)
+            if shape.layers
+            else ctx.texture(shape.size, shape.components, dtype=shape.dtype)
+        )
         integer = shape.dtype[0] in "iu"
         mode = moderngl.LINEAR if shape.linear and not integer else moderngl.NEAREST
         self.texture.filter = (mode, mode)
@@ -146,19 +147,21 @@ class TargetPool:
 
     def _make(self, images: Sequence[Image], depth_key: tuple[int, int, int] | None) -> moderngl.Framebuffer:
         textures = [image.texture for image in images]
-        if depth_key is None or depth_key[2] == 0:
-            return self._ctx.framebuffer(textures, self._depth(depth_key) if depth_key else None)
-        buffer = self._depth(depth_key)
+        depth = self._depth(depth_key) if depth_key else None
+        if not isinstance(depth, DepthArray):
+            return self._ctx.framebuffer(textures, depth)
         framebuffer = self._ctx.framebuffer(textures)
-        buffer.attach(framebuffer)
+        depth.attach(framebuffer)
         return framebuffer
 
     def _depth(self, key: tuple[int, int, int]) -> moderngl.Renderbuffer | DepthArray:
         """The depth buffer for a width, height and number of layers (0: not an array)."""
         if key not in self._depths:
-            *size, layers = key
+            width, height, layers = key
             self._depths[key] = (
-                DepthArray(self._ctx, tuple(size), layers) if layers else self._ctx.depth_renderbuffer(tuple(size))
+                DepthArray(self._ctx, (width, height), layers)
+                if layers
+                else self._ctx.depth_renderbuffer((width, height))
             )
         return self._depths[key]
 

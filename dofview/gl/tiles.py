@@ -76,7 +76,8 @@ def upload(targets: TargetPool, name: str, masks: Sequence[np.ndarray], size: tu
     for row, found in enumerate(lists):
         texels[row, : len(found)] = found[:MOST_RECTANGLES]
     image.write(texels[::-1])
-    inside = [np.minimum(found, np.float32([*size, *size])) for found in lists]
+    whole = np.array([*size, *size], np.float32)
+    inside = [np.minimum(found, whole) for found in lists]
     areas = [int(((i[:, 2] - i[:, 0]) * (i[:, 3] - i[:, 1])).sum()) for i in inside]
     return [
         Tiles(image, row, len(found), area) if len(found) <= MOST_RECTANGLES else None

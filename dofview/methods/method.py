@@ -8,12 +8,12 @@ from the fields of `Params`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
 from moderngl import Query
 from pydantic import BaseModel, ConfigDict
 
-from dofview.gl.passes import draw
+from dofview.gl.passes import Color, draw
 from dofview.gl.targets import Image
 from dofview.gl.tiles import Tiles
 from dofview.render.frame import Frame
@@ -41,7 +41,7 @@ class Method(Protocol):
 
     # Optional: QUALITIES, tuples of parameters from cheap to good, by which the benchmark measures the method.
 
-    def render(self, frame: Frame, params: Params) -> Image: ...
+    def render(self, frame: Frame, params: Any) -> Image: ...
 
 
 class Recipe:
@@ -68,7 +68,7 @@ class Recipe:
     def draw(
         self, shader: str, into: Image | Sequence[Image], *, values: Mapping[str, object] | None = None,
         defines: Mapping[str, object] | None = None, blocks: Mapping[str, BaseModel] | None = None,
-        blend: tuple | None = None, clear: bool | tuple[float, ...] = False,
+        blend: tuple | None = None, clear: bool | Color = False,
         viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None, sprites: int | None = None,
         when: Query | None = None, images: Mapping[str, Image] | None = None, **textures: Image,
     ) -> None:  # fmt: skip

@@ -6,6 +6,7 @@ import json
 import math
 from bisect import bisect_right
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -59,7 +60,7 @@ def gaze(
         while len(seen) <= frame + 1:
             tick, now = len(seen) - 1, seen[-1]
             look = trace.at(tick / how.rate_hz)
-            pull = step(pull, look, tick, lambda x, y, now=now: inverse_depth(now, x, y), how, width / height)
+            pull = step(pull, look, tick, partial(inverse_depth, now), how, width / height)
             seen.append(_focused(settings, pull.distance))
         return seen[frame + 1]
 

@@ -11,12 +11,15 @@ import os
 import tempfile
 from fractions import Fraction
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
 from dofview.errors import InputError, OutputError
 from dofview.export import save, to_srgb8, write_png8, write_whole
+
+if TYPE_CHECKING:
+    import av
 
 PIECE_FRAMES = 30
 BT709, SRGB_CURVE, LIMITED = 1, 13, 1
@@ -80,7 +83,7 @@ class Video:
             self._file = av.open(str(self._part), "w", format=container, options=muxing)
         except (OSError, av.FFmpegError) as error:
             raise OutputError(f"{path}: cannot write the film: {_reason(error)}") from error
-        self._stream = self._file.add_stream(codec, rate=self._rate, options=options)
+        self._stream = cast("av.VideoStream", self._file.add_stream(codec, rate=self._rate, options=options))
         self._stream.width, self._stream.height = self._size
         self._stream.pix_fmt = "yuv420p"
         self._stream.gop_size = PIECE_FRAMES

@@ -67,8 +67,10 @@ class MaterialSet:
         self.items = tuple(self._upload(material) for material in materials)
 
     def release(self) -> None:
-        for thing in (*self._pictures.values(), *self._samplers.values()):
-            thing.release()
+        for texture in self._pictures.values():
+            texture.release()
+        for sampler in self._samplers.values():
+            sampler.release()
         self._pictures.clear()
         self._samplers.clear()
 
@@ -85,8 +87,8 @@ class MaterialSet:
             features[f"{slot.upper()}_MAP"] = True
             matrix = np.array(np.eye(2, 3) if texture.transform is None else texture.transform, np.float64)
             matrix *= [[0.5 if wrap == "mirror" else 1.0] for wrap in _wraps(texture)]
-            transforms[f"{slot}_uv0"] = (*map(float, matrix[0]), float(texture.texcoord))
-            transforms[f"{slot}_uv1"] = (*map(float, matrix[1]), 0.0)
+            transforms[f"{slot}_uv0"] = (*matrix[0].tolist(), float(texture.texcoord))
+            transforms[f"{slot}_uv1"] = (*matrix[1].tolist(), 0.0)
         if material.unlit:
             features["UNLIT"] = True
         if material.alpha_mode != "OPAQUE":
@@ -157,7 +159,7 @@ def _decodes_srgb_exactly(gpu: Gpu) -> bool:
         error = np.abs(decoded.pixels()[0, :, 0] - SRGB_TO_LINEAR) / np.maximum(SRGB_TO_LINEAR, 1e-4)
         gpu.facts["decodes_srgb_exactly"] = bool(error.max() < 5e-4)
         texture.release()
-    return gpu.facts["decodes_srgb_exactly"]
+    return bool(gpu.facts["decodes_srgb_exactly"])
 
 
 GL_SRGB8_ALPHA8 = 0x8C43

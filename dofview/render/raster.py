@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 
 from dofview.gl.context import Gpu
-from dofview.gl.passes import Blocks, Textures, bind, block_texts
+from dofview.gl.passes import AnyTexture, Blocks, Textures, bind, block_texts
 from dofview.gl.targets import Image
 from dofview.render.lights import Lights
 from dofview.render.upload import GpuScene
@@ -136,7 +136,7 @@ def _draw_all(
         all_defines = {**material.features, **lights.defines, **defines}
         program = gpu.shaders.program(*stages, defines=all_defines, blocks=block_texts(all_blocks))
         _set_culling(gpu.ctx, material.double_sided)
-        named = {name: texture for name, (texture, _) in material.textures.items()}
+        named: dict[str, AnyTexture] = {name: texture for name, (texture, _) in material.textures.items()}
         if "environment_map" in program.samplers:
             named |= lights.textures
         bind(gpu, program, {**named, **textures}, all_blocks, values)

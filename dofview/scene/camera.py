@@ -42,7 +42,7 @@ class Camera(BaseModel):
         backward /= np.linalg.norm(backward)
         up = np.asarray(self.up, dtype=np.float64)
         right = np.cross(up, backward)
-        if np.linalg.norm(right) <= 1e-9 * max(np.linalg.norm(up), 1e-300):
+        if np.linalg.norm(right) <= 1e-9 * max(float(np.linalg.norm(up)), 1e-300):
             # Looking straight along `up`: any perpendicular will do, taken from the axis least aligned with the view.
             right = np.cross(np.eye(3)[np.argmin(np.abs(backward))], backward)
         right /= np.linalg.norm(right)

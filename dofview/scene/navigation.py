@@ -81,8 +81,8 @@ def between(a: Camera, b: Camera, share: float) -> Camera:
         return b
     vfov_deg = a.vfov_deg + (b.vfov_deg - a.vfov_deg) * share
     up = _swung(np.asarray(a.up, float), np.asarray(b.up, float), share)
-    arms = [np.subtract(c.position, c.target, dtype=np.float64) for c in (a, b)]
-    arm = _swung(*arms, share)
+    start, end = (np.subtract(c.position, c.target, dtype=np.float64) for c in (a, b))
+    arm = _swung(start, end, share)
     position, target = (
         np.asarray(x) + np.subtract(y, x) * share for x, y in ((a.position, b.position), (a.target, b.target))
     )

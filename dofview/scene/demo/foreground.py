@@ -8,10 +8,11 @@ from dofview.scene.demo import patterns as paint
 from dofview.scene.demo.parts import Part, both, near, painted, standing
 from dofview.scene.demo.shapes import Shape, lathe, place, sheet, sphere, tube
 
+POSITION, VFOV_DEG = (0.0, 1.5, 6.0), 40.0
 VIEW = {
     "camera": {
-        "position": [0.0, 1.5, 6.0], "target": [0.0, 1.5, 0.0], "up": [0.0, 1.0, 0.0],
-        "vfov_deg": 40.0, "near": 1.5, "far": 8.0,
+        "position": [*POSITION], "target": [0.0, 1.5, 0.0], "up": [0.0, 1.0, 0.0],
+        "vfov_deg": VFOV_DEG, "near": 1.5, "far": 8.0,
     },
     "lens": {"radius": 0.0875, "focus_distance": 6.0, "distribution": "uniform_disc"},
     "image": {"size": [512, 384]},
@@ -80,8 +81,8 @@ def _curtain() -> list[Part]:
     shapes: list[list[Shape]] = [[] for _ in beads]
     rods = []
     for index, (across, distance, threaded) in enumerate(STRINGS):
-        half = distance * np.tan(np.radians(VIEW["camera"]["vfov_deg"] / 2))
-        x, z = across * half * 4 / 3, VIEW["camera"]["position"][2] - distance
+        half = distance * np.tan(np.radians(VFOV_DEG / 2))
+        x, z = across * half * 4 / 3, POSITION[2] - distance
         rods.append(tube([(x, 1.5 - 1.3 * half, z), (x, 1.5 + 1.3 * half, z)], 0.0045 * distance, (8, 8), 0.4))
         for nth, (height, radius) in enumerate(threaded):
             ball = sphere(radius * distance, (18, 11))
@@ -106,6 +107,7 @@ def _niche() -> list[Part]:
     glass = painted("bottle", paint.stripes(44, ("23513f", "2f6b52", "e2d9b8", "2f6b52"), 16), 0.4)
     fruit = painted("orange", paint.plaster(45, ("d9701a", "f08c24", "f6a93b"), 0.7), 0.6)
     oranges = [(0.08, 0.26, 0.05, 0.13), (0.33, 0.27, 0.02, 0.14), (0.22, 0.4, 0.02, 0.13)]
+    balls = [place(sphere(radius), (x, y, z)) for x, y, z, radius in oranges]
     stood = near((-1.75, 0.3, 0, 0.36), (0.2, 0.2, 0, 0.36), (1.55, 0.3, 0, 0.2), (2.2, 0.2, 0, 0.22), strength=0.9)
     shelf = sheet((-4.5, 0, 0), (9, 0, 0), (0, 0, -0.4), (60, 4), 1.5)
     ceiling = sheet((-4.5, NICHE, -0.4), (9, 0, 0), (0, 0, 0.4), (12, 2), 1.5)
@@ -115,7 +117,7 @@ def _niche() -> list[Part]:
         Part(sheet((-4.5, 0, -0.4), (9, 0, 0), (0, NICHE, 0), (45, 8), 1.2), ochre, both(_dusk, stood)),
         Part(place(lathe(VASE, (32, 24), (3, 1)), (-1.75, 0, 0)), blue, floor),
         Part(place(lathe(BOWL, (32, 16), (4, 1)), (0.2, 0, 0), scale=1.1), clay, floor),
-        Part(sum((place(sphere(r), at) for *at, r in oranges), ()), fruit, both(standing(0, 0.2), near(*oranges))),
+        Part(sum(balls, ()), fruit, both(standing(0, 0.2), near(*oranges))),
         Part(place(lathe(BOTTLE, (24, 20), (2, 1)), (1.55, 0, 0)), glass, floor),
         Part(place(lathe(VASE, (24, 16), (3, 1)), (2.2, 0, 0), scale=0.6), clay, floor),
     ]
