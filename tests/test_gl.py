@@ -176,6 +176,16 @@ def test_one_hundred_resizes_leave_nothing_behind(gpu: Gpu):
     assert live_objects(gpu.ctx) == before
 
 
+def test_a_released_pool_is_no_longer_bound(gpu: Gpu):
+    """moderngl binds what was bound again after it has made a framebuffer; a name that is gone would be an error."""
+    other = Gpu(gpu.ctx)
+    image = other.targets.image("test/other", (2, 2))
+    draw(other, "pass/copy.frag", image, textures={"source": image})
+    other.release()
+    made = gpu.targets.framebuffer((gpu.targets.image("test/after", (3, 2)),))
+    assert gpu.ctx.error == "GL_NO_ERROR" and made.size == (3, 2)
+
+
 def test_display_is_srgb_of_linear_light(gpu: Gpu):
     from dofview.metrics import srgb_encode
     from dofview.render.display import Display, Tonemap, show

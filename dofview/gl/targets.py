@@ -142,6 +142,8 @@ class TargetPool:
     def release(self) -> None:
         """Release everything."""
         self.collect(keep_frames=-1)
+        if self._ctx.fbo is self._resting:
+            self._ctx.detect_framebuffer(0).use()  # what is bound is bound again after making another
         self._resting.color_attachments[0].release()
         self._resting.release()
 
