@@ -52,8 +52,8 @@ class Sweep:
     coc_px: tuple[float, ...] = (16.0, 8.0, 32.0, 4.0, 64.0)
     sizes: tuple[tuple[int, int], ...] = ((512, 384),)
     frames: int = 5
-    views: int = 512
-    trust_db: float = 55.0
+    views: int = 384
+    trust_db: float = 52.0
     every_quality: bool = True
 
     def cases(self) -> Iterator[Case]:
@@ -66,6 +66,37 @@ class Sweep:
                 for name in [*of_lens, "accumulation"] if of_lens else []:
                     for parameters in qualities(name, self.every_quality):
                         yield Case(scene, name, distribution, coc, size, tuple(sorted(parameters.items())))
+
+
+def quick() -> tuple[Sweep, ...]:
+    """Small enough for two cores and five minutes."""
+    return (Sweep(coc_px=(8.0, 16.0), sizes=((192, 144),), frames=3, views=128, every_quality=False),)
+
+
+def full() -> tuple[Sweep, ...]:
+    """Every blur and quality; and at one blur the other lens, more and fewer pixels, and more and fewer triangles."""
+    sweep = Sweep()
+    one = replace(sweep, coc_px=(16.0,), every_quality=False, frames=3)
+    background = replace(one, scenes=("demo:background",), views=96)
+    return (
+        replace(sweep, coc_px=(16.0,)),
+        replace(one, distributions=tuple(kind.value for kind in (Distribution.UNIFORM_DISC, Distribution.GAUSSIAN))),
+        replace(background, sizes=((256, 192), (512, 384), (1024, 768))),
+        replace(background, scenes=tuple(f"demo:background{count}" for count in ("@5k", "", "@60k", "@200k"))),
+        sweep,
+    )
+
+
+def cases(self) -> Iterator[Case]:
+    """Every combination, one blur after the other; cases that share a reference follow one another."""
+    for coc, scene, size in product(self.coc_px, self.scenes, self.sizes):
+        for distribution in Distribution.UNIFORM_DISC.value, Distribution.GAUSSIAN.value:
+            of_lens = [
+                    name for name in self.methods if distribution in (self.distributions or (natural(name),))
+                ]  # fmt: skip
+            for name in [*of_lens, "accumulation"] if of_lens else []:
+                for parameters in qualities(name, self.every_quality):
+                    yield Case(scene, name, distribution, coc, size, tuple(sorted(parameters.items())))
 
 
 def quick() -> tuple[Sweep, ...]:

@@ -62,7 +62,7 @@ def _chosen(
     sweeps: Sequence[Sweep], scenes: str | None, methods: str | None, coc: str | None, sizes: str | None,
     frames: int | None, views: int | None,
 ) -> Sequence[Sweep]:  # fmt: skip
-    """`sweeps`, or the first of them alone with the lists that were given."""
+    """`sweeps`, or the last of them, which is the general one, alone with the lists that were given."""
     changes: dict[str, object] = {}
     if scenes:
         changes["scenes"] = tuple(scenes.split(","))
@@ -78,7 +78,7 @@ def _chosen(
         changes["frames"] = _at_least_one(frames, "frames")
     if views is not None:
         changes["views"] = _at_least_one(views, "views")
-    return (dataclasses.replace(sweeps[0], **changes),) if changes else sweeps
+    return (dataclasses.replace(sweeps[-1], **changes),) if changes else sweeps
 
 
 def _number(text: str, name: str) -> float:

@@ -19,7 +19,7 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = False
-QUALITIES = ({"views": 16}, {"views": 64}, {"views": 256})
+QUALITIES = ({"views": 4}, {"views": 16}, {"views": 64})
 
 
 class Params(BaseParams):
