@@ -87,38 +87,6 @@ def full() -> tuple[Sweep, ...]:
     )
 
 
-def cases(self) -> Iterator[Case]:
-    """Every combination, one blur after the other; cases that share a reference follow one another."""
-    for coc, scene, size in product(self.coc_px, self.scenes, self.sizes):
-        for distribution in Distribution.UNIFORM_DISC.value, Distribution.GAUSSIAN.value:
-            of_lens = [
-                    name for name in self.methods if distribution in (self.distributions or (natural(name),))
-                ]  # fmt: skip
-            for name in [*of_lens, "accumulation"] if of_lens else []:
-                for parameters in qualities(name, self.every_quality):
-                    yield Case(scene, name, distribution, coc, size, tuple(sorted(parameters.items())))
-
-
-def quick() -> tuple[Sweep, ...]:
-    """Small enough for two cores and five minutes."""
-    return (Sweep(coc_px=(8.0, 16.0), sizes=((192, 144),), frames=3, views=128, every_quality=False),)
-
-
-def full() -> tuple[Sweep, ...]:
-    """Every blur and quality; then, at one blur, the other lens, more and fewer pixels, and more triangles."""
-    sweep = Sweep()
-    one = replace(sweep, coc_px=(16.0,), every_quality=False, frames=3)
-    return (
-        sweep,
-        replace(one, distributions=tuple(kind.value for kind in (Distribution.UNIFORM_DISC, Distribution.GAUSSIAN))),
-        replace(one, scenes=("demo:background",), sizes=((256, 192), (512, 384), (1024, 768)), views=128),
-        replace(
-            one, scenes=("demo:background@5k", "demo:background", "demo:background@100k", "demo:background@500k"),
-            views=128,
-        ),
-    )  # fmt: skip
-
-
 def cases(sweeps: Iterable[Sweep]) -> Iterator[tuple[Sweep, Case]]:
     """The cases of all `sweeps`, each once, with the sweep that says how to measure it."""
     seen = set()
