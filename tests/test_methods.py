@@ -37,10 +37,12 @@ def planes(gpu: Gpu) -> Iterator[Pipeline]:
     pipeline.release()
 
 
+@pytest.mark.parametrize("skip", [True, False])
 @pytest.mark.parametrize("name", BLURRING)
-def test_aperture_0_is_the_pinhole(planes: Pipeline, name: str):
+def test_aperture_0_is_the_pinhole(planes: Pipeline, name: str, skip: bool):
+    """Also where the whole method is not left out for it."""
     shut = Lens(radius=0.0, focus_distance=5.0)
-    picture = planes.render(settings_for(name, shut)).pixels()
+    picture = planes.render(settings_for(name, shut).with_params(skip=skip)).pixels()
     assert np.abs(picture - planes.render(settings_for("pinhole", shut)).pixels()).max() <= 1e-4
 
 
@@ -48,7 +50,7 @@ def test_aperture_0_is_the_pinhole(planes: Pipeline, name: str):
 def test_a_closing_aperture_becomes_the_pinhole(planes: Pipeline, name: str):
     """At a largest CoC radius of 1e-5 px: no threshold may blur, and no division may fail."""
     barely = Lens(radius=1e-6, focus_distance=5.0)
-    picture = planes.render(settings_for(name, barely)).pixels()
+    picture = planes.render(settings_for(name, barely).with_params(skip=False)).pixels()
     assert psnr(picture, planes.render(settings_for("pinhole", barely)).pixels()) >= 60.0
 
 

@@ -17,7 +17,7 @@ from pydantic import Field
 
 from dofview.gl.targets import Image
 from dofview.methods.layered_peels import Peels
-from dofview.methods.layered_plan import Plan, plan, recursive, spaced, step_for
+from dofview.methods.layered_plan import LEAST_RADIUS, Plan, plan, recursive, spaced, step_for
 from dofview.methods.layered_side import Side
 from dofview.methods.method import Params as BaseParams
 from dofview.methods.method import Recipe
@@ -90,6 +90,8 @@ class Params(BaseParams):
 def render(frame: Frame, params: Params) -> Image:
     """Return the picture of `frame` through its lens."""
     count = frame.gpu.profile.count
+    if params.skip and not params.inspect and frame.in_focus(0.99 * LEAST_RADIUS):
+        return frame.pinhole().color
     recipe = Recipe(frame, "layered", params)
 
     # What is visible, and what is behind it, until a peel finds nothing: then there is nothing unknown.
@@ -102,7 +104,7 @@ def render(frame: Frame, params: Params) -> Image:
 
     # Slices by blur; those without content are left out, and their blur is added to the next one's.
     slices = layout(frame, params)
-    filled = known.content.filled(slices)
+    filled = known.content.filled(slices) if params.skip else slices
     count("layered layers", len(filled))
     count("layered layers empty", len(slices) - len(filled))
 

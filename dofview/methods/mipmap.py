@@ -31,6 +31,10 @@ QUALITIES = (
 )  # fmt: skip
 
 
+SHARP_PX = 0.003
+"""CoC radius up to which the picture is the pinhole's to 1e-5, px; it grows as the square beyond."""
+
+
 class Constants(StrEnum):
     """Which constants and filters."""
 
@@ -59,12 +63,16 @@ class Params(BaseParams):
 
 def render(frame: Frame, params: Params) -> Image:
     """Return the picture with depth of field. Steps are numbered as in the paper's figure 10."""
+    if params.skip and frame.in_focus(SHARP_PX):
+        return frame.pinhole().color
     paper = params.constants == Constants.PAPER
     sigma = frame.lens.radius_as_sigma_fraction if paper else frame.lens.matched_sigma_fraction
     recipe = Recipe(frame, "mipmap", params, sigma=sigma)
     nearest, farthest = frame.coc_range()
     top = _level(sigma * max(abs(nearest), abs(farthest)))
-    levels = min(math.ceil(top), most_levels(frame.size)) if params.skip else most_levels(frame.size)
+    most = most_levels(frame.size)
+    levels = min(math.ceil(top), most) if params.skip else most
+    frame.gpu.profile.count("mipmap levels skipped", most - levels)
     atlas = Atlas(frame.size, max(levels, 1))
     defines = {"LAST_LEVEL": atlas.levels}
     defines |= {"PAPER": 1} if paper else {}
@@ -83,7 +91,7 @@ def render(frame: Frame, params: Params) -> Image:
         )  # fmt: skip
         foreground = {"don": don, "even_zbn": even.zbn, "odd_zbn": odd.zbn}
         defines["SMOOTHED"] = 1
-    else:
+    elif params.smooth_foreground:
         frame.gpu.profile.count("mipmap smoothings skipped")
 
     # 5. Between the two levels that give each pixel its blur.

@@ -39,6 +39,9 @@ QUALITIES = (
     {"samples": 8, "layers": 8, "probes": 1}, {"samples": 16}, {}, {"samples": 64, "layers": 24},
 )  # fmt: skip
 NOISE_SIZE = 64
+SHARP_PX = 5e-6
+"""CoC radius up to which the picture is the pinhole's to 1e-5, px: beyond, cones take in what is beside a pixel."""
+
 Vec3 = tuple[float, float, float]
 
 
@@ -101,6 +104,7 @@ class Params(BaseParams):
     view_dependent: bool = Field(
         default=False, description="Light surfaces for the point of the lens that sees them, not for its centre."
     )
+    skip: bool = Field(default=True, description="Leave out work that cannot change the picture.")
     culling: Culling = Field(default=Culling.TILES, description="How layers without anything in reach are left out.")
     show: Show = Field(default=Show.PICTURE, description="The picture, one layer, layers walked, or probes per ray.")
     shown_layer: int = Field(default=0, ge=0, le=MOST_LAYERS - 1, description="The layer that is shown.")
@@ -120,6 +124,8 @@ class ViewBlock(BaseModel):
 
 def render(frame: Frame, params: Params) -> Image:
     """Draw the layers, find which of them each pixel can see, trace."""
+    if params.skip and params.show is Show.PICTURE and frame.in_focus(SHARP_PX):
+        return frame.pinhole().color
     recipe = Recipe(frame, "multiview", params)
     count = params.layers if params.spacing is Spacing.BUDGET else count_for_growth(frame, params.growth)
     kind = Kind(fit(frame, count, params.overlap), params.layering, params.detail, params.view_dependent, params.cones)

@@ -31,6 +31,9 @@ QUALITIES = (
 )  # fmt: skip
 
 PAPER_RADIUS = 1.7
+SHARP_PX = 1e-5
+"""CoC radius up to which the picture is the pinhole's to 1e-5, px: beyond, the first blurred sub-image mixes in."""
+
 CULLED = "methods/pyramid/culled.glsl"
 STEPS = (("culled", False, False), ("filled", True, False), ("matte", True, True))
 """What `inspect` keeps before the blur: name, holes filled, weighted."""
@@ -70,6 +73,8 @@ class Params(BaseParams):
 
 def render(frame: Frame, params: Params) -> Image:
     """Return the picture with depth of field, its sub-images blended from front to back."""
+    if params.skip and not params.inspect and frame.in_focus(SHARP_PX):
+        return frame.pinhole().color
     paper = params.blur is Blur.PAPER
     sigma = frame.lens.radius_as_sigma_fraction if paper else frame.lens.matched_sigma_fraction
     recipe = Recipe(frame, "pyramid", params, sigma=sigma)

@@ -29,6 +29,10 @@ QUALITIES = (
 )  # fmt: skip
 
 
+SHARP_PX = 0.35
+"""CoC radius up to which a sprite is its own pixel and the picture the pinhole's, px."""
+
+
 class Computation(StrEnum):
     """How the sprites are summed; the picture is the same."""
 
@@ -105,6 +109,8 @@ class Params(BaseParams):
 
 def render(frame: Frame, params: Params) -> Image:
     """Return the picture on the canvas; the guard band itself is not blurred."""
+    if params.skip and not params.extrapolate and not params.inspect and frame.in_focus(SHARP_PX):
+        return frame.pinhole().color
     recipe = Recipe(frame, "splatting", params)
     points = make_points(recipe, params)
     picture = recipe.image("picture")

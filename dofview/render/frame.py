@@ -144,6 +144,16 @@ class Frame:
         depths = self.depth_range()
         return float(self.coc.radius_px(depths.nearest)), float(self.coc.radius_px(depths.farthest))
 
+    def in_focus(self, within_px: float) -> bool:
+        """Whether no visible surface, guard band included, has a CoC radius above `within_px`; counted if so.
+
+        A method whose picture is the pinhole's up to some radius has nothing to do then.
+        """
+        near, far = self.coc_range()
+        found = max(abs(near), abs(far)) <= within_px
+        self.gpu.profile.count("frames in focus", int(found))
+        return found
+
     def _surfaces(self, name: str, behind: Image | None = None) -> Surfaces:
         targets = self.gpu.targets
         color = targets.image(f"frame/{name}", self.size)
