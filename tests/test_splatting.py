@@ -5,7 +5,9 @@ Bounds are the method's own promises; where one was measured, it says so.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +17,8 @@ from scenes import quad, scene_of, three_planes, unlit
 from dofview.bokeh import of_lens
 from dofview.gl.context import Gpu
 from dofview.lens import Lens, focal_px
-from dofview.methods.splatting import Computation
+from dofview.methods.splatting import Computation, Params, _gather, _scatter
+from dofview.methods.splatting_choice import faster
 from dofview.methods.splatting_points import Reduction
 from dofview.metrics import psnr, ssim
 from dofview.pipeline import Pipeline
@@ -24,6 +27,7 @@ from dofview.scene.demo import build, view
 from dofview.scene.model import Scene
 from dofview.settings import ImageSettings, Settings
 
+WAYS = (Computation.GATHER, Computation.SCATTER)
 PAPER = {
     "delta": 0.4, "hidden_test": "depth", "epsilon": 0.05, "edge_depth": 0.01, "fill": False, "reduction": "none",
 }  # fmt: skip
@@ -71,6 +75,32 @@ def test_gather_equals_scatter_without_the_hidden_image_and_with_the_papers_cons
         gathered = planes.render(settings).pixels()
         scattered = planes.render(settings.with_params(computation=Computation.SCATTER)).pixels()
         assert np.abs(gathered - scattered).max() <= 1e-5, params
+
+
+@pytest.mark.parametrize("slow", [Computation.GATHER, Computation.SCATTER])
+def test_the_faster_computation_is_taken(planes: Pipeline, monkeypatch: pytest.MonkeyPatch, slow: Computation):
+    """On a GPU both are tried, once; the frame's own counts stay."""
+    gpu, tried = planes.gpu, []
+    frame = planes.render(settings_for()).frame
+    monkeypatch.setattr(gpu, "facts", {})
+    assert faster(frame, {}, Params()) is Computation.GATHER and not gpu.facts  # software: known
+    monkeypatch.setattr(gpu, "software", False)
+
+    def way(name: Computation, sum_up, *given: object) -> None:
+        tried.append(name)
+        if tried.count(name) == 1:
+            sum_up(*given)
+        elif name is slow:
+            time.sleep(0.02)
+
+    ways = {Computation.GATHER: _gather, Computation.SCATTER: _scatter}
+    timed = {name: partial(way, name, sum_up) for name, sum_up in ways.items()}
+    counts = dict(gpu.profile.counts)
+    fast = ({*timed} - {slow}).pop()
+    assert faster(frame, timed, Params()) is fast
+    assert {*tried} == {*timed} and dict(gpu.profile.counts) == counts
+    tried.clear()
+    assert faster(frame, timed, Params()) is fast and not tried
 
 
 @pytest.mark.parametrize("lens", [MIDDLE, Lens(radius=0.2, focus_distance=2.8), Lens(radius=0.05, focus_distance=5.0)])
@@ -140,7 +170,7 @@ def test_a_point_is_the_aperture_and_keeps_its_energy(gpu: Gpu, shape: str, coc:
     pipeline = Pipeline(gpu, point_light(size, 1000.0))
     settings = settings_for(lens, (size, size), Camera()).with_(background_linear=(0, 0, 0))
     expected = scaled_aperture(lens, coc, size)
-    for computation in Computation if abs(coc) < 20.0 else ("gather",):
+    for computation in WAYS if abs(coc) < 20.0 else ("gather",):
         found = pipeline.render(settings.with_params(computation=computation)).pixels()[..., 1] / 1000.0
         assert abs(found.sum() / expected.sum() - 1.0) <= 1e-3
         assert np.sqrt(((found - expected) ** 2).sum() / (expected**2).sum()) <= 0.02
@@ -272,7 +302,7 @@ def test_what_is_just_outside_blurs_in_with_a_guard_band_only(gpu: Gpu):
     pipeline.release()
 
 
-@pytest.mark.parametrize("computation", Computation)
+@pytest.mark.parametrize("computation", WAYS)
 def test_a_circle_larger_than_any_sprite_is_cut_but_finite(planes: Pipeline, computation: Computation):
     huge = settings_for(Lens(radius=60.0, focus_distance=5.0), (40, 30)).with_params(computation=computation)
     picture = planes.render(huge).pixels()

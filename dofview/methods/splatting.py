@@ -14,6 +14,7 @@ from pydantic import Field
 from dofview.gl.targets import Image
 from dofview.methods.method import Params as BaseParams
 from dofview.methods.method import Recipe
+from dofview.methods.splatting_choice import Computation, faster
 from dofview.methods.splatting_points import Points, Reduction, draw_highlights, make_points, search_map
 from dofview.render.frame import Frame
 
@@ -31,13 +32,6 @@ QUALITIES = (
 
 SHARP_PX = 0.35
 """CoC radius up to which a sprite is its own pixel and the picture the pinhole's, px."""
-
-
-class Computation(StrEnum):
-    """How the sprites are summed; the picture is the same."""
-
-    GATHER = "gather"
-    SCATTER = "scatter"
 
 
 class HiddenTest(StrEnum):
@@ -99,7 +93,8 @@ class Params(BaseParams):
         json_schema_extra={"unit": "px"},
     )  # fmt: skip
     computation: Computation = Field(
-        default=Computation.GATHER, description="gather: each pixel looks for its sprites; scatter: sprites are drawn."
+        default=Computation.AUTO,
+        description="gather: each pixel looks for its sprites; scatter: sprites are drawn; auto: the faster one here.",
     )
     skip: bool = Field(default=True, description="Leave out work that cannot change the picture.")
     inspect: bool = Field(
@@ -113,11 +108,10 @@ def render(frame: Frame, params: Params) -> Image:
         return frame.pinhole().color
     recipe = Recipe(frame, "splatting", params)
     points = make_points(recipe, params)
+    ways = {Computation.GATHER: _gather, Computation.SCATTER: _scatter}
+    way = faster(frame, ways, params) if params.computation is Computation.AUTO else params.computation
     picture = recipe.image("picture")
-    if params.computation is Computation.SCATTER:
-        _scatter(recipe, points, picture)
-    else:
-        _gather(recipe, points, picture, params)
+    ways[way](recipe, points, picture, params)
     return picture
 
 
@@ -151,7 +145,7 @@ def _gather(recipe: Recipe, points: Points, picture: Image, params: Params) -> N
     )  # fmt: skip
 
 
-def _scatter(recipe: Recipe, points: Points, picture: Image) -> None:
+def _scatter(recipe: Recipe, points: Points, picture: Image, params: Params) -> None:
     """The paper's way: sprites by blending, V to L0–L2, H to M1 and M2 (section 3.4), then composition."""
     l1, l2, l0 = (recipe.image(f"L{i}") for i in (1, 2, 0))
     textures = {"layer_0": l0, "layer_1": l1, "layer_2": l2}

@@ -31,11 +31,14 @@ class Sprite(NamedTuple):
     textures: dict[str, Image]
 
 
+DISC = Sprite("disc", 1.0, {}, {"extent": 1.0}, {})
+
+
 def sprite_of(recipe: Recipe) -> Sprite:
     """The sprite of the frame's lens, its table made when the lens's shape has changed."""
     lens, cache = recipe.frame.lens, recipe.frame.cache
     if lens.distribution is Distribution.UNIFORM_DISC:
-        return Sprite("disc", 1.0, {}, {"extent": 1.0}, {})
+        return DISC
     key = ("aperture", _shape_key(lens))
     if key not in cache.values:
         aperture = of_lens(lens, TEXELS)

@@ -74,6 +74,14 @@ class Points:
         )  # fmt: skip
 
 
+def constants(levels: int, sprite: Sprite) -> dict[str, object]:
+    """What all shaders of the method must agree on."""
+    return {
+        "MOST_RADIUS": MOST_RADIUS, "K_N_STEPS": K_N_STEPS, "K_N_COUNT": K_N_COUNT, "TILE": TILE, "LEVELS": levels,
+        **sprite.flags,
+    }  # fmt: skip
+
+
 def make_points(recipe: Recipe, params: Params) -> Points:
     """Render the images that the method asks for and pack them into points."""
     frame = recipe.frame
@@ -87,10 +95,7 @@ def make_points(recipe: Recipe, params: Params) -> Points:
         while levels < (1 if by_paper else MOST_LEVELS) and visible >= merged_from * 2.0**levels:
             levels += 1
     sprite = sprite_of(recipe)
-    flags: dict[str, object] = {
-        "MOST_RADIUS": MOST_RADIUS, "K_N_STEPS": K_N_STEPS, "K_N_COUNT": K_N_COUNT, "TILE": TILE, "LEVELS": levels,
-        **({"HIDDEN": 1} if hidden else {}), **({"BY_PAPER": 1} if by_paper else {}), **sprite.flags,
-    }  # fmt: skip
+    flags = constants(levels, sprite) | ({"HIDDEN": 1} if hidden else {}) | ({"BY_PAPER": 1} if by_paper else {})
     images = [recipe.image("points"), recipe.image("hidden points"), recipe.image("other points")]
     surfaces = frame.pinhole()
     textures = {
