@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -51,6 +52,15 @@ def test_the_lens_gives_the_mean_coc_that_was_asked_for():
     assert 2.0 * coc.mean() == pytest.approx(case.coc_px, rel=1e-4)
     assert record["ms"] > 0 and record["reference_views"] == 16 and record["triangles"] > 1000
     assert record["passes_ms"] and record["counts"]["passes"] > 0
+
+
+def test_what_was_left_out_is_counted():
+    """Counters that cost time are of a frame that is not in the times."""
+    sweep = replace(TINY, methods=("splatting",))
+    measurer = Bench()
+    record = measurer.run(next(iter(sweep.cases())), sweep)
+    measurer.release()
+    assert 0 <= record["counts"]["splatting tiles copied"] < record["counts"]["splatting tiles"]
 
 
 def test_every_method_is_in_the_quick_sweep():

@@ -98,7 +98,7 @@ class Params(BaseParams):
     )
     skip: bool = Field(default=True, description="Leave out work that cannot change the picture.")
     inspect: bool = Field(
-        default=False, description="Keep the three layers as images to look at, and count tiles that were skipped."
+        default=False, description="Keep the three layers, and how many points each pixel looks at, as images."
     )
 
 
@@ -132,7 +132,7 @@ def _gather(recipe: Recipe, points: Points, picture: Image, params: Params) -> N
             flags["SPRITES"] = 1
     into = [picture]
     if params.inspect:
-        into += [recipe.image(f"L{i}") for i in range(3)]
+        into += [*(recipe.image(f"L{i}") for i in range(3)), recipe.image("fetches", components=1)]
         flags["INSPECT"] = 1
     if params.skip and not _has_front(frame.coc_range(), params.delta):
         flags["NO_FRONT"] = 1
@@ -141,7 +141,7 @@ def _gather(recipe: Recipe, points: Points, picture: Image, params: Params) -> N
         _count_tiles(recipe, reach, points.levels)
     recipe.draw(
         "gather.frag", into, defines=flags, values={"merged_from": points.merged_from, **points.sprite.values},
-        viewport=(frame.guard, frame.guard, *frame.inner_size), **textures,
+        viewport=(frame.guard, frame.guard, *frame.inner_size), clear=params.inspect, **textures,
     )  # fmt: skip
 
 

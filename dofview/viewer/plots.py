@@ -1,4 +1,4 @@
-"""Plots that follow the work: time of each pass, time of each frame, and error against time of every method."""
+"""Plots that follow the work: time of each pass and frame, what it did and what it saved, error against time."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from imgui_bundle import imgui, implot
 
 from dofview.bench.pareto import front
+from dofview.pipeline import Result
 from dofview.viewer.actions import Action
 from dofview.viewer.measurement import Measurement
 from dofview.viewer.survey import Point, Survey
@@ -25,7 +26,7 @@ FIT = implot.AxisFlags_.auto_fit
 
 
 class Plots(Tool):
-    """A window of its own with three plots; passes are timed only while it is open."""
+    """A window of its own with three plots; passes are timed, and all that can be counted is, only while it is open."""
 
     def __init__(self) -> None:
         self.shown = False
@@ -65,6 +66,7 @@ class Plots(Tool):
         if opened:
             self._passes(app)
             self._frames(app)
+            self._work(app)
             self._errors(app)
         imgui.end()
 
@@ -109,6 +111,13 @@ class Plots(Tool):
         implot.plot_line("frame##frame", np.arange(len(times), dtype=float) - len(times) + 1.0, times)
         implot.end_plot()
 
+    def _work(self, app: App) -> None:
+        """The canvas with its guard band, and the counters of the last rendering: work done, work left out."""
+        if app.result is None or not imgui.collapsing_header("Work done and left out##work"):
+            return
+        for line in work(app.result):
+            imgui.text_disabled(line)
+
     def _errors(self, app: App) -> None:
         """One point for each method, and those that no other beats in time and error."""
         survey = app.tool(Survey)
@@ -130,6 +139,15 @@ class Plots(Tool):
         if implot.begin_plot("Error against time##errors", (-1.0, height), QUIET):
             _scatter(finite, survey.points, outdated)
             implot.end_plot()
+
+
+def work(result: Result) -> list[str]:
+    """What a rendering did, a line for each figure."""
+    width, height = result.frame.size
+    return [
+        f"canvas {width}x{height}, guard band of {result.frame.guard} px on each side",
+        *(f"{count} {name}" for name, count in sorted(result.counts.items())),
+    ]
 
 
 def _scatter(finite: list[Point], points: list[Point], outdated: bool) -> None:

@@ -12,7 +12,7 @@ from dofview.methods import METHODS
 from dofview.scene.camera import Camera
 from dofview.viewer.app import App
 from dofview.viewer.judge import Judge
-from dofview.viewer.plots import Plots
+from dofview.viewer.plots import Plots, work
 from dofview.viewer.survey import Survey
 from dofview.viewer.truth import Truth
 
@@ -97,6 +97,10 @@ def plots(context: Context, app: App) -> None:
     renders = app.scene_renders
     context.yield_(5)
     assert app.scene_renders == renders and len(tool.history) == 3, "plots render nothing"
+    context.item_open("//Plots/Work done and left out##work")
+    context.yield_(2)
+    lines = work(app.result)
+    assert "guard band of 8 px" in lines[0] and any(line.endswith(" passes") for line in lines)
 
 
 def measure_all(context: Context, app: App) -> None:

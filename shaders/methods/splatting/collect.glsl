@@ -1,6 +1,10 @@
 // All points of one level whose sprites reach a pixel, added to the layers of the pixel.
 uniform float merged_from;  // CoC radius from which points of level 0 are merged into level 1; doubles with each level
 
+#ifdef INSPECT
+float fetches_made = 0.0;
+#endif
+
 struct Here
 {
     float coc;
@@ -17,6 +21,9 @@ void gather(sampler2D points, int level, float radius, bool hidden, Here here, i
         float dy = q.y - float(y) - 0.5, half_row = sqrt(max(bound * bound - dy * dy, 0.0));
         for (int x = max(int(ceil(q.x - half_row - 0.5)), 0); x <= min(int(floor(q.x + half_row - 0.5)), last.x); ++x) {
             vec4 point = texelFetch(points, ivec2(x, y), 0);
+#ifdef INSPECT
+            fetches_made += 1.0;
+#endif
             float coc = point_coc(point), share = point_share(point);
             if (level < LEVELS) share *= staying(coc, merged_from * texel);
             float weight = alpha(q - vec2(x, y) - 0.5, coc, share, level), apart = coc - here.coc;

@@ -37,6 +37,7 @@ layout(location = 0) out vec4 color;
 layout(location = 1) out vec4 layer_0;
 layout(location = 2) out vec4 layer_1;
 layout(location = 3) out vec4 layer_2;
+layout(location = 4) out float fetches;
 #endif
 
 #include "methods/splatting/collect.glsl"
@@ -99,5 +100,6 @@ void main()
     layer_0 = layers.front;
     layer_1 = layers.same;
     layer_2 = layers.behind;
+    fetches = fetches_made;
 #endif
 }
