@@ -13,7 +13,7 @@ from dofview.stress.bench import Bench
 from dofview.stress.row import Measured, Row, bounds
 from dofview.stress.run import ROWS, chosen_rows, stress
 
-CHEAP = (1, 2, 4, 5, 13, 19)
+CHEAP = (1, 2, 4, 5, 13, 19, 24)
 
 
 def test_every_bound_has_a_value(gpu: Gpu):

@@ -89,7 +89,7 @@ class Params(BaseParams):
         description="Merge blurred points: none; paper: 2×2 where nothing is hidden; levels: up to 8×8, by blur.",
     )  # fmt: skip
     reduced_from: float = Field(
-        default=6.0, ge=1.0, le=64.0, description="CoC diameter from which points are merged; the paper: 4.",
+        default=6.0, ge=3.0, le=64.0, description="CoC diameter from which points are merged; the paper: 4.",
         json_schema_extra={"unit": "px"},
     )  # fmt: skip
     computation: Computation = Field(

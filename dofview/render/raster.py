@@ -18,12 +18,20 @@ from dofview.render.upload import GpuScene
 from dofview.scene.camera import Camera
 
 
+FLAT = 20000.0
+"""24 bits of depth over this ratio of far to near separate surfaces a part in a thousand apart out to the far plane.
+Beyond it depth is stored by its logarithm, which separates a part in 100,000 everywhere, but keeps the driver from
+testing depth before it shades."""
+DEEPEST = 1e10
+
+
 @dataclass(frozen=True)
 class Projection:
-    """Where the scene is drawn from: `clip_from_local` (4, 4) float64 and the eye in local space."""
+    """Where the scene is drawn from: `clip_from_local` (4, 4) float64, the eye in local space, near and far plane."""
 
     clip_from_local: np.ndarray
     eye: np.ndarray
+    near_far: tuple[float, float]
 
 
 def depth_range(scene: GpuScene, camera: Camera) -> tuple[float, float]:
@@ -33,8 +41,7 @@ def depth_range(scene: GpuScene, camera: Camera) -> tuple[float, float]:
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
     depths = -(corners @ view[2, :3] + view[2, 3])
     far = max(float(depths.max()) * 1.0001, camera.distance * 1e-3)
-    # 24 bits of depth over a ratio of 20000 separate surfaces a part in a thousand apart out to the far plane.
-    near = max(float(depths.min()) * 0.9999, far / 20000.0)
+    near = max(float(depths.min()) * 0.9999, far / DEEPEST)
     return near, max(far, near * 1.001)
 
 
@@ -63,7 +70,7 @@ def projection(
     view[0, 3] -= right
     view[1, 3] -= up
     eye = np.asarray(camera.position) - scene.origin + np.array([right, up, 0.0]) @ camera.axes()
-    return Projection(matrix @ view, eye)
+    return Projection(matrix @ view, eye, (near, far))
 
 
 class Runs(NamedTuple):
@@ -129,6 +136,10 @@ def _draw_all(
     values = {**values, "clip_from_local": _column_major(view.clip_from_local), "eye": tuple(view.eye)}
     if reject is not None:
         defines = {**defines, "HAS_REJECT": 1, "REJECT": reject}
+    near, far = view.near_far
+    if far > FLAT * near:
+        defines = {**defines, "LOG_DEPTH": 1}
+        values["log_depth"] = (float(np.log2(near)), 1.0 / float(np.log2(far / near)))
     stages = ["render/scene.vert", *([geometry] if geometry else []), "render/scene.frag"]
     for number, first, count in draws.ranges:
         material = scene.materials.items[number]

@@ -1,7 +1,8 @@
 """A scene on the GPU: one vertex buffer and one index buffer, baked in world space around the scene's own origin.
 
-Positions are carried to the world in float64 and stored relative to the middle of the bounds, so a scene a million
-metres away keeps its detail in float32. Draws of one material are merged, in pieces small enough to cull.
+Positions are carried to the world in float64 and stored relative to where most of the scene is, so one a million metres
+away, or with a sky that far, keeps its detail in float32. Draws of one material are merged, in pieces small enough to
+cull.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 
 from dofview.gl.context import Gpu
 from dofview.render.materials import MaterialSet
-from dofview.scene.model import Instance, Primitive, Scene
+from dofview.scene.model import Instance, Primitive, Scene, instance_bounds
 
 VERTEX_FORMAT = "3f 3f 2f 2f 4f"
 VERTEX_NAMES = ("in_position", "in_normal", "in_texcoord0", "in_texcoord1", "in_color")
@@ -38,7 +39,7 @@ class GpuScene:
 
     def __init__(self, gpu: Gpu, scene: Scene):
         self.scene = scene
-        self.origin = scene.bounds.mean(axis=0)
+        self.origin = _origin(scene)
         self.materials = MaterialSet(gpu, scene.materials)
         vertices, triangles, self.draws = _bake(scene, self.origin)
         self._vertices = gpu.ctx.buffer(vertices.tobytes()) if len(vertices) else None
@@ -105,6 +106,13 @@ def _corners(draws: tuple[Draw, ...]) -> np.ndarray:
     for number, draw in enumerate(draws):
         corners[number, :, :3] = np.stack(np.meshgrid(*draw.bounds.T, indexing="ij"), axis=-1).reshape(8, 3)
     return corners
+
+
+def _origin(scene: Scene) -> np.ndarray:
+    """(3,) the median of the middles of all instances: one large one far away does not move it."""
+    boxes = [instance_bounds(scene.primitives[i.primitive], i.matrix) for i in scene.instances]
+    middles = [box.mean(axis=0) for box in boxes if box is not None]
+    return np.median(middles, axis=0) if middles else np.zeros(3)
 
 
 def _bake(scene: Scene, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, tuple[Draw, ...]]:

@@ -28,14 +28,14 @@ class Bench:
 
     def settings(
         self, method: str, lens: Lens, camera: Camera = CAMERA, size: tuple[int, int] | None = None,
-        background: float = 0.0, **image: object,
+        background: float = 0.0, views: int | None = None, **image: object,
     ) -> Settings:  # fmt: skip
-        """Settings for a square picture of the bench's size; the reference gets the bench's number of views."""
+        """Settings for a square picture of the bench's size; the reference gets `views`, or the bench's number."""
         settings = Settings(
             camera=camera, lens=lens, method=method, background_linear=(background,) * 3,
             image=ImageSettings(size=size or (self.size, self.size), **image),
         )  # fmt: skip
-        return settings.with_params(views=self.views) if method == "accumulation" else settings
+        return settings.with_params(views=views or self.views) if method == "accumulation" else settings
 
     def picture(self, scene: Scene, settings: Settings) -> np.ndarray:
         """(h, w, 3) linear; the scene is uploaded once while it is the same object."""

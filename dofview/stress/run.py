@@ -11,12 +11,12 @@ import numpy as np
 from dofview.errors import SettingsError
 from dofview.gl.context import Gpu
 from dofview.methods import METHODS
-from dofview.stress import blur, light, motion, symmetry
+from dofview.stress import blur, corners, light, motion, symmetry
 from dofview.stress.bench import Bench
 from dofview.stress.row import Failure, Measured, Row, failures
 
 ROWS: tuple[Row, ...] = tuple(
-    sorted((*light.ROWS, *blur.ROWS, *symmetry.ROWS, *motion.ROWS), key=lambda row: row.number)
+    sorted((*light.ROWS, *blur.ROWS, *symmetry.ROWS, *motion.ROWS, *corners.ROWS), key=lambda row: row.number)
 )
 
 

@@ -20,6 +20,9 @@ in Vertex
 #include <REJECT>
 
 uniform vec3 eye;  // lens centre or lens sample, local space
+#ifdef LOG_DEPTH
+uniform vec2 log_depth;  // log2 of the nearest depth, 1 / log2 of the farthest over it
+#endif
 
 #ifdef DEPTH_ONLY
 layout(location = 0) out float inverse_depth;
@@ -45,6 +48,9 @@ void main()
 {
     // gl_FragCoord.w is 1/w of the clip position, and w is the view depth: exact, with no depth buffer in between.
     inverse_depth = gl_FragCoord.w;
+#ifdef LOG_DEPTH
+    gl_FragDepth = clamp((-log2(gl_FragCoord.w) - log_depth.x) * log_depth.y, 0.0, 1.0);
+#endif
 #ifdef HAS_REJECT
     if (reject(inverse_depth, ivec2(gl_FragCoord.xy))) discard;
 #endif
