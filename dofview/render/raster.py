@@ -17,7 +17,6 @@ from dofview.render.lights import Lights
 from dofview.render.upload import GpuScene
 from dofview.scene.camera import Camera
 
-
 FLAT = 20000.0
 """24 bits of depth over this ratio of far to near separate surfaces a part in a thousand apart out to the far plane.
 Beyond it depth is stored by its logarithm, which separates a part in 100,000 everywhere, but keeps the driver from
