@@ -74,7 +74,8 @@ def quick() -> tuple[Sweep, ...]:
 
 
 def full() -> tuple[Sweep, ...]:
-    """Every blur and quality; and at one blur the other lens, more and fewer pixels, and more and fewer triangles."""
+    """Every quality at one blur, and there the other lens, more and fewer pixels, more and fewer triangles; the defaults
+    at every blur; every quality at two more."""
     sweep = Sweep()
     one = replace(sweep, coc_px=(16.0,), every_quality=False, frames=3)
     background = replace(one, scenes=("demo:background",), views=96)
@@ -83,7 +84,8 @@ def full() -> tuple[Sweep, ...]:
         replace(one, distributions=tuple(kind.value for kind in (Distribution.UNIFORM_DISC, Distribution.GAUSSIAN))),
         replace(background, sizes=((256, 192), (512, 384), (1024, 768))),
         replace(background, scenes=tuple(f"demo:background{count}" for count in ("@5k", "", "@60k", "@200k"))),
-        sweep,
+        replace(sweep, coc_px=(32.0, 8.0, 64.0, 4.0), every_quality=False, frames=3),
+        replace(sweep, coc_px=(32.0, 8.0)),
     )
 
 
