@@ -21,17 +21,18 @@ MOST_LOST = 1e-4
 
 
 class Sprite(NamedTuple):
-    """What shaders that include sprite.glsl are given; `extent` is how far a sprite reaches, in CoC radii,
-    and `key` changes with the shape."""
+    """What shaders that include sprite.glsl are given; `extent` is how far a sprite reaches and `spread` its standard
+    deviation on one axis, both in CoC radii, and `key` changes with the shape."""
 
     key: object
     extent: float
+    spread: float
     flags: dict[str, object]
     values: dict[str, object]
     textures: dict[str, Image]
 
 
-DISC = Sprite("disc", 1.0, {}, {"extent": 1.0}, {})
+DISC = Sprite("disc", 1.0, 0.5, {}, {"extent": 1.0, "spread": 0.5}, {})
 
 
 def sprite_of(recipe: Recipe) -> Sprite:
@@ -42,14 +43,14 @@ def sprite_of(recipe: Recipe) -> Sprite:
     key = ("aperture", _shape_key(lens))
     if key not in cache.values:
         aperture = of_lens(lens, TEXELS)
-        cache.values[key] = (aperture, reach_of(aperture))
-    aperture, extent = cache.values[key]  # type: ignore[misc]
+        cache.values[key] = (aperture, reach_of(aperture), spread_of(aperture))
+    aperture, extent, spread = cache.values[key]  # type: ignore[misc]
     side = len(aperture.weights) + 1
     table = recipe.image("aperture", (side, side), components=1, linear=True)
     if not cache.holds(key, table):
         table.write(summed_area(aperture.weights)[..., None])
-    values = {"extent": extent, "aperture_half_width": aperture.extent}
-    return Sprite(key, extent, {"APERTURE": 1}, values, {"aperture_sums": table})
+    values = {"extent": extent, "spread": spread, "aperture_half_width": aperture.extent}
+    return Sprite(key, extent, spread, {"APERTURE": 1}, values, {"aperture_sums": table})
 
 
 def summed_area(weights: np.ndarray) -> np.ndarray:
@@ -57,6 +58,13 @@ def summed_area(weights: np.ndarray) -> np.ndarray:
     table = np.zeros((weights.shape[0] + 1, weights.shape[1] + 1))
     table[1:, 1:] = weights[::-1].cumsum(axis=0).cumsum(axis=1)
     return table[::-1]
+
+
+def spread_of(aperture: Aperture) -> float:
+    """Standard deviation of the light on one axis, lens radii: the mean of both, about the middle of the light."""
+    place = ((np.arange(len(aperture.weights)) + 0.5) * (2.0 / len(aperture.weights)) - 1.0) * aperture.extent
+    axes = aperture.weights.sum(axis=0), aperture.weights.sum(axis=1)
+    return float(np.sqrt(np.mean([light @ place**2 - (light @ place) ** 2 for light in axes])))
 
 
 def reach_of(aperture: Aperture) -> float:

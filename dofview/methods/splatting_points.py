@@ -14,7 +14,7 @@ from dofview.gl.passes import ADD
 from dofview.gl.pyramids import level_size
 from dofview.gl.targets import Image
 from dofview.methods.method import Params, Recipe
-from dofview.methods.splatting_aperture import Sprite, sprite_of
+from dofview.methods.splatting_aperture import DISC, Sprite, sprite_of
 from dofview.render.frame import Surfaces
 from dofview.render.raster import depth_range, draw_scene
 
@@ -89,12 +89,13 @@ def make_points(recipe: Recipe, params: Params) -> Points:
     visible = max(-frame.coc_range()[0], frame.coc_range()[1])
     widest = min(max(visible, frame.coc.at_infinity if hidden else 0.0), MOST_RADIUS)
     by_paper = params.reduction is Reduction.PAPER
-    merged_from = 0.5 * params.reduced_from
+    sprite = sprite_of(recipe)
+    # A shape with its light near the middle, a triangle say, is as fine as a smaller disc.
+    merged_from = 0.5 * params.reduced_from * (1.0 if by_paper else max(DISC.spread / sprite.spread, 1.0))
     levels = 0
     if params.reduction is not Reduction.NONE:
         while levels < (1 if by_paper else MOST_LEVELS) and visible >= merged_from * 2.0**levels:
             levels += 1
-    sprite = sprite_of(recipe)
     flags = constants(levels, sprite) | ({"HIDDEN": 1} if hidden else {}) | ({"BY_PAPER": 1} if by_paper else {})
     images = [recipe.image("points"), recipe.image("hidden points"), recipe.image("other points")]
     surfaces = frame.pinhole()

@@ -1,6 +1,7 @@
 // The sprite of the lens's distribution of light, and the weight it gives a pixel (eq 5). Points of level l stand for
 // blocks of 2^l x 2^l pixels; lengths are in texels of their level, and so a block is the pixel of its level.
 uniform float extent;  // how far the sprite reaches, CoC radii
+uniform float spread;  // its standard deviation on one axis, CoC radii
 
 #ifdef APERTURE
 #include "methods/splatting/aperture.glsl"
@@ -15,12 +16,12 @@ uniform float extent;  // how far the sprite reaches, CoC radii
 // the reference: 0.3 to 1.2 dB.
 //
 // A block: it has blurred by its own width already, (4^l - 1) / 12 px^2 more than a pixel. That much less is left for the
-// disc, whose variance per axis is r^2 / 4.
+// sprite, whose variance on an axis is its squared spread.
 float squared_sprite_radius(float coc, int level)
 {
     float own = 0.5 / extent, texel = float(1 << level);
     if (level == 0) return coc * coc + own * own * max(1.0 - abs(coc) / 1.5, 0.0);
-    return max(coc * coc - (texel * texel - 1.0) / 3.0, 0.25) / (texel * texel);
+    return max(coc * coc - (texel * texel - 1.0) / (12.0 * spread * spread), 0.25) / (texel * texel);
 }
 
 float sprite_radius(float coc, int level)
