@@ -27,6 +27,7 @@ View = Annotated[
 MethodName = Annotated[str | None, Parameter(name=("--method", "-m"), help=f"One of {', '.join(METHODS)}.")]
 CameraName = Annotated[str | None, Parameter(name="--camera", help="A camera of the file, by name or number from 0.")]
 Safe = Annotated[bool, Parameter(name="--safe", negative="", help="Read and change nothing that was saved.")]
+LogFile = Annotated[Path | None, Parameter(name="--log", help="Write what is said, done and changed into this file.")]
 Json = Annotated[bool, Parameter(name="--json", negative="", help="As JSON.")]
 
 
@@ -61,12 +62,12 @@ def make_app(chosen: str | None) -> App:
 
 def view(
     scene: Spec = OPENS_WITH, /, *, view: View = None, method: MethodName = None, camera: CameraName = None,
-    safe: Safe = False, given: Given,
+    safe: Safe = False, log: LogFile = None, given: Given,
 ) -> None:  # fmt: skip
     """Open the viewer. Without a scene it shows a demo."""
     from dofview.cli.window import open_window
 
-    open_window(scene, given, view=view, method=method, camera=camera, safe=safe)
+    open_window(scene, given, view=view, method=method, camera=camera, safe=safe, log=log)
 
 
 def render(

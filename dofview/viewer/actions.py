@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
@@ -44,14 +45,14 @@ def _next_method(app: App, step: int) -> None:
     app.settings = app.settings.with_(method=METHODS[index])
 
 
+log = logging.getLogger("dofview.viewer")
+MENUS = ("File", "Edit", "View", "Camera", "Lens", "Focus", "Gaze", "Compare", "Interface", "Help")
 CTRL, SHIFT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_shift)
 
 ACTIONS: tuple[Action, ...] = (
     Action("Open path…", CTRL | SHIFT | int(imgui.Key.o), "Ctrl+Shift+O",
            "Type the path of a file to open, or a demo such as demo:rail.",
            lambda app: setattr(app, "asking_for_path", True), "File"),
-    Action("Save picture", CTRL | int(imgui.Key.s), "Ctrl+S", "Save the picture as PNG, without the interface.",
-           lambda app: app.save_picture(), "File"),
     Action("Quit", CTRL | int(imgui.Key.q), "Ctrl+Q", "Close the window.",
            lambda app: setattr(app, "quitting", True), "File"),
     Action("Next method", int(imgui.Key.m), "M", "Switch to the next method.", lambda app: _next_method(app, 1)),
@@ -71,7 +72,13 @@ def run_keys(app: App) -> None:
         return
     for action in app.actions:
         if action.key and _pressed(action):
-            action.run(app)
+            perform(app, action)
+
+
+def perform(app: App, action: Action) -> None:
+    """Do it, and say so in the log."""
+    log.info("action: %s", action.name)
+    action.run(app)
 
 
 def _pressed(action: Action) -> bool:
@@ -90,11 +97,11 @@ def menu_bar(app: App) -> None:
     """Draw the menus."""
     if not imgui.begin_main_menu_bar():
         return
-    for menu in dict.fromkeys(action.menu for action in app.actions):
+    for menu in MENUS:
         if imgui.begin_menu(menu):
             for action in app.actions:
                 if action.menu == menu and imgui.menu_item_simple(action.name, action.key_text):
-                    action.run(app)
+                    perform(app, action)
                 if action.menu == menu and imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
                     imgui.set_tooltip(action.help)
             for tool in app.tools:

@@ -6,22 +6,26 @@ Nothing is rendered unless something it depends on has changed.
 
 from __future__ import annotations
 
+import logging
 import statistics
 import time
+from collections import deque
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from dofview.errors import DofviewError
 from dofview.gl.context import Gpu
 from dofview.gl.targets import Image
+from dofview.methods import method
 from dofview.pipeline import Pipeline, Result
-from dofview.remember import note
 from dofview.render.display import show
 from dofview.scene.load import DEMO
 from dofview.scene.model import Scene
 from dofview.settings import ImageSettings, Settings
-from dofview.viewer import files, layout, viewport
+from dofview.viewer import layout, viewport
 from dofview.viewer.actions import ACTIONS, Action, Gesture, menu_bar, run_keys
 from dofview.viewer.dialogs import path_dialog
 from dofview.viewer.loading import Loader
@@ -30,7 +34,8 @@ from dofview.viewer.store import Store
 from dofview.viewer.tool import Part, Placed, Tool
 from dofview.viewer.tools import TOOLS
 
-MESSAGE_S = 8.0
+MOST_MESSAGES = 200
+log = logging.getLogger("dofview.viewer")
 T = TypeVar("T", bound=Tool)
 
 
@@ -58,7 +63,10 @@ class App:
         self.panels_focused = False
         self.asking_for_path = False
         self.quitting = False
-        self.message = ""
+        self.when_drawn: Callable[[np.ndarray], None] | None = None
+        """Called once by the window with what it shows, (h, w, 4) uint8."""
+        self.message, self.said = "", deque[str](maxlen=MOST_MESSAGES)
+        self.said_at = 0.0
         self.milliseconds: list[float] = []
         self.scene_renders = 0
         self.result: Result | None = None
@@ -68,7 +76,6 @@ class App:
         self.shown: Image | None = None
         self.accumulated = Measurement()
         self._figures: list[tuple[str, bool]] = []
-        self._message_until = 0.0
         self._rendered: object = None
         self._displayed: object = None
         self.loader = Loader(wake)
@@ -126,17 +133,13 @@ class App:
         self._figures.append((line, faint))
 
     def take_figures(self) -> list[tuple[str, bool]]:
-        """The lines of this frame: method and time first, a message last."""
-        first = self.settings.method
+        """The lines of this frame, method and time first."""
+        first = method(self.settings.method).TITLE
         if self.milliseconds and self.settings.method != "accumulation":
             first += f"   {statistics.median(self.milliseconds[-9:]):.1f} ms"
         lines = [(first, False), *self._figures]
         if self.settings.method == "accumulation":
             lines.append((self.accumulated.reference_text(), False))
-        if self.loader.spec:
-            lines.append((f"loading {self.loader.spec}, Escape stops", False))
-        if self.message and time.monotonic() < self._message_until:
-            lines.append((self.message, False))
         self._figures = []
         return lines
 
@@ -163,16 +166,6 @@ class App:
         except DofviewError as error:
             self.report(str(error))
 
-    def save_picture(self, path: Path | None = None) -> None:
-        """Save the picture shown as PNG under `path`, or under a new name in the working folder."""
-        if self.shown is None:
-            return
-        try:
-            remark = note(self.spec, self.settings)
-            self.report(f"saved {files.save_png(self.shown.pixels(), path, remark)}")
-        except DofviewError as error:
-            self.report(str(error))
-
     def reload_shaders(self) -> bool:
         """Take up shader files that were edited; True when the picture is to be drawn again."""
         if not self.gpu.shaders.reload():
@@ -183,9 +176,10 @@ class App:
         return True
 
     def report(self, message: str) -> None:
-        """Show one line for a while."""
-        self.message = message
-        self._message_until = time.monotonic() + MESSAGE_S
+        """Show one line for a while, and keep it in the list of messages and in the log."""
+        self.message, self.said_at = message, time.monotonic()
+        self.said.append(message)
+        log.info(message)
         self.wake()
 
     def release(self) -> None:

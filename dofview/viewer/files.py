@@ -45,9 +45,9 @@ def scene_and_view(spec: str, settings: Settings) -> tuple[Scene, Settings]:
 
 
 def save_png(pixels: np.ndarray, path: Path | None = None, note: str = "") -> Path:
-    """Save (h, w, 4) 8-bit `pixels` as PNG, whole or not at all, never over a file nobody named."""
+    """Save (h, w, 3 or 4) 8-bit `pixels` as PNG, whole or not at all, never over a file nobody named."""
     path = path or unused_name(".png")
-    write_whole(path, lambda part: write_png8(part, np.ascontiguousarray(pixels[..., :3]), note))
+    write_whole(path, lambda part: write_png8(part, np.ascontiguousarray(pixels), note))
     return path
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import logging
+from typing import TYPE_CHECKING, Any
 
 from imgui_bundle import imgui
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from dofview.viewer.app import App
 
 MOST_STEPS = 200
+log = logging.getLogger("dofview.viewer")
 
 
 class History(Tool):
@@ -40,6 +42,7 @@ class History(Tool):
         if self._now is None or _same(self._now, settings):
             self._now = settings
             return
+        log.info("settings: %s", changes(self._now, settings))
         self._past = [*self._past, self._now][-MOST_STEPS:]
         self._future.clear()
         self._now = settings
@@ -57,6 +60,19 @@ class History(Tool):
         settings = source.pop()
         image = settings.image.model_copy(update={"size": app.settings.image.size})
         app.settings = self._now = settings.with_(image=image)
+
+
+def changes(before: Settings, after: Settings) -> str:
+    """The values of `after` that differ, in words."""
+    old, new = _flat(before.model_dump(mode="json")), _flat(after.model_dump(mode="json"))
+    return ", ".join(f"{name} {value}" for name, value in new.items() if old.get(name) != value)
+
+
+def _flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        found |= _flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {f"{prefix}{name}": value}
+    return found
 
 
 def _same(first: Settings, second: Settings) -> bool:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from dofview.viewer import theme
 from dofview.viewer.actions import CTRL, Action
 from dofview.viewer.store import Interface, Theme
 from dofview.viewer.tool import Tool
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
     from dofview.viewer.app import App
 
 STEP = 1.1
-_KEPT = ("alpha", "font_size_base", "font_scale_main", "font_scale_dpi")
-"""Fields of a style that are no sizes, or are set apart."""
 
 
 class Appearance(Tool):
@@ -49,19 +48,10 @@ class Appearance(Tool):
         if wanted == self._applied:
             return
         self._applied = wanted
-        style, fresh = imgui.get_style(), imgui.Style()
-        fresh.scale_all_sizes(app.content_scale * app.interface.scale)
-        for name in dir(fresh):
-            value = getattr(fresh, name)
-            if not name.startswith("_") and name not in _KEPT and isinstance(value, float | imgui.ImVec2):
-                setattr(style, name, value)
+        style = imgui.get_style()
+        theme.apply(app.interface.theme, app.content_scale * app.interface.scale)
         style.font_scale_dpi = app.content_scale
         style.font_scale_main = app.interface.scale
-        light = app.interface.theme == Theme.LIGHT
-        (imgui.style_colors_light if light else imgui.style_colors_dark)()
-        # imgui's own grey is hard to read.
-        grey = 0.36 if light else 0.66
-        style.set_color_(imgui.Col_.text_disabled, (grey, grey, grey, 1.0))
 
     def panel(self, app: App) -> None:
         interface = edit(app.interface)

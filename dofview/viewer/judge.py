@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -16,7 +17,7 @@ from dofview.errors import DofviewError
 from dofview.render.reference import Quality
 from dofview.viewer.actions import Action
 from dofview.viewer.measurement import Measurement
-from dofview.viewer.tool import Tool
+from dofview.viewer.tool import Tool, Work
 from dofview.viewer.truth import NO_VIEWS, REFERENCE, Truth
 
 if TYPE_CHECKING:
@@ -95,6 +96,10 @@ class Judge(Tool):
             self.cancel()
         elif truth.done(app):
             self._start(app, truth)
+
+    def work(self, app: App) -> Iterable[Work]:
+        if self._running is not None:
+            yield Work("judging", self.done / len(ZONES), self.cancel)
 
     def busy(self, app: App) -> bool:
         return self.wanted or (self._running is not None and self._running.done())

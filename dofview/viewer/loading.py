@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import NamedTuple
@@ -27,6 +28,7 @@ class Loader:
         # Two, since a reader that nobody waits for any more cannot be stopped.
         self._worker = ThreadPoolExecutor(max_workers=2, thread_name_prefix="load")
         self._wanted: Future[Loaded] | None = None
+        self._began = 0.0
         self.spec = ""
         """What is being loaded; empty when nothing is."""
 
@@ -37,12 +39,18 @@ class Loader:
             scene, opening = files.scene_and_view(spec, settings)
             return Loaded(spec, scene, None if keep_view else opening)
 
+        self._began = time.monotonic()
         self.spec, self._wanted = spec, self._worker.submit(read)
         self._wanted.add_done_callback(lambda _: self._wake())
 
     def cancel(self) -> None:
         """Forget what is being read."""
         self.spec, self._wanted = "", None
+
+    @property
+    def seconds(self) -> float:
+        """How long it has been reading."""
+        return time.monotonic() - self._began
 
     @property
     def ready(self) -> bool:

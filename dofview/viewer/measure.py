@@ -51,7 +51,7 @@ class Measure(Tool):
             self.measurement = Measurement(psnr(app.gpu, app.result.image, truth.picture(app)), quality)
 
     def busy(self, app: App) -> bool:
-        return self._active(app) and not self.measurement.done
+        return self._active(app) and not app.tool(Truth).done(app)
 
     def over_picture(self, app: App, rect: Rect, hovered: bool) -> bool:
         if self._active(app):

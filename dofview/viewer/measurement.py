@@ -51,10 +51,10 @@ class Measurement:
         return f"reference: {self.quality.views} views, vouches for {self.quality.self_psnr:.1f} dB"
 
 
-def add_views(app: App, reference: Reference) -> None:
-    """Render views into the reference for a part of a frame's time, at least one."""
+def add_views(app: App, reference: Reference, most: int = 1 << 30) -> None:
+    """Render views into the reference for a part of a frame's time, at least one, and not more than `most`."""
     start = time.perf_counter()
-    while True:
+    for _ in range(most):
         reference.add(1)
         app.scene_renders += 1
         app.gpu.ctx.finish()

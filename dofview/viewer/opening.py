@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,7 +21,7 @@ from dofview.settings import Settings, apply_view, read_view, view_of
 from dofview.viewer import files
 from dofview.viewer.actions import CTRL, Action
 from dofview.viewer.store import Saved, Store
-from dofview.viewer.tool import Tool
+from dofview.viewer.tool import Tool, Work
 from dofview.viewer.widgets import plain
 
 if TYPE_CHECKING:
@@ -106,6 +107,12 @@ class Opening(Tool):
             except DofviewError as error:
                 app.report(str(error))
 
+    def work(self, app: App) -> Iterable[Work]:
+        if app.loader.spec:
+            yield Work(f"loading, {app.loader.seconds:.0f} s", None, app.loader.cancel)
+        if self._environment is not None:
+            yield Work("reading the environment", None, self._forget_environment)
+
     def busy(self, app: App) -> bool:
         waiting = (self._asked, self._environment and self._environment[1])
         return any(future.done() for future in waiting if future)
@@ -129,6 +136,9 @@ class Opening(Tool):
         elif self._asked is None:
             self._asked = self._worker.submit(files.ask)
             self._asked.add_done_callback(lambda _: app.wake())
+
+    def _forget_environment(self) -> None:
+        self._environment = None
 
     def _remember(self, app: App) -> None:
         if spec := key_of(app.spec):

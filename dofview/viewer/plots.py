@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from dofview.viewer.app import App
 
 HISTORY = 120
-HEIGHT_EM = 15.0
+WIDTH_EM, HEIGHT_EM = 36.0, 12.0
 QUIET = implot.Flags_.no_mouse_text | implot.Flags_.no_menus
 FIT = implot.AxisFlags_.auto_fit
 
@@ -58,10 +58,10 @@ class Plots(Tool):
         if implot.get_current_context() is None:
             self._context = implot.create_context()
         size, area = imgui.get_font_size(), imgui.get_main_viewport()
-        first = imgui.Cond_.first_use_ever
-        imgui.set_next_window_pos((area.work_pos.x + size, area.work_pos.y + 4 * size), first)
-        imgui.set_next_window_size((38 * size, min(52 * size, area.work_size.y - 5 * size)), first)
-        opened, still = imgui.begin("Plots", True)
+        place = (area.work_pos.x + size, area.work_pos.y + 5 * size)
+        imgui.set_next_window_pos(place, imgui.Cond_.first_use_ever)
+        imgui.set_next_window_size_constraints((0.0, 0.0), (area.work_size.x, area.work_size.y - 6 * size))
+        opened, still = imgui.begin("Plots", True, imgui.WindowFlags_.always_auto_resize)
         self.shown = bool(still)
         if opened:
             self._passes(app)
@@ -85,9 +85,11 @@ class Plots(Tool):
             return
         clock = "wall clock around each pass" if app.gpu.profile.clock == "wall" else "timer queries"
         height = HEIGHT_EM * imgui.get_font_size()
-        if not implot.begin_plot(f"Passes of {app.settings.method}, ms ({clock})##passes", (-1.0, height), QUIET):
+        if not implot.begin_plot(
+            f"Passes of {app.settings.method}, ms ({clock})##passes", (WIDTH_EM * imgui.get_font_size(), height), QUIET
+        ):
             return
-        implot.setup_axes("rendering", "ms", FIT, FIT)
+        _setup_history(len(self.history))
         implot.setup_legend(implot.Location_.east, implot.LegendFlags_.outside)
         count = len(self.history)
         base = np.zeros(count)
@@ -104,9 +106,11 @@ class Plots(Tool):
     def _frames(self, app: App) -> None:
         """Milliseconds of whole renderings."""
         height = 0.6 * HEIGHT_EM * imgui.get_font_size()
-        if not implot.begin_plot("Frames, ms##frames", (-1.0, height), QUIET | implot.Flags_.no_legend):
+        if not implot.begin_plot(
+            "Frames, ms##frames", (WIDTH_EM * imgui.get_font_size(), height), QUIET | implot.Flags_.no_legend
+        ):
             return
-        implot.setup_axes("rendering", "ms", FIT, FIT)
+        _setup_history(len(app.milliseconds))
         times = np.array(app.milliseconds[-HISTORY:], dtype=float)
         implot.plot_line("frame##frame", np.arange(len(times), dtype=float) - len(times) + 1.0, times)
         implot.end_plot()
@@ -122,7 +126,7 @@ class Plots(Tool):
         """One point for each method, and those that no other beats in time and error."""
         survey = app.tool(Survey)
         if survey.running:
-            imgui.progress_bar(survey.progress(app), (-6.0 * imgui.get_font_size(), 0.0), "measuring all")
+            imgui.progress_bar(survey.progress(app), (20.0 * imgui.get_font_size(), 0.0), "measuring all")
             imgui.same_line()
             if imgui.button("cancel##survey"):
                 survey.cancel()
@@ -135,8 +139,7 @@ class Plots(Tool):
         imgui.text_disabled(Measurement(0.0, survey.points[0].quality).reference_text())
         if outdated:
             imgui.text_disabled("of another view")
-        height = HEIGHT_EM * imgui.get_font_size()
-        if implot.begin_plot("Error against time##errors", (-1.0, height), QUIET):
+        if implot.begin_plot("Error against time##errors", _size(1.2), QUIET):
             _scatter(finite, survey.points, outdated)
             implot.end_plot()
 
@@ -148,6 +151,19 @@ def work(result: Result) -> list[str]:
         f"canvas {width}x{height}, guard band of {result.frame.guard} px on each side",
         *(f"{count} {name}" for name, count in sorted(result.counts.items())),
     ]
+
+
+def _size(height: float) -> tuple[float, float]:
+    """Of a plot, in pixels."""
+    size = imgui.get_font_size()
+    return WIDTH_EM * size, height * HEIGHT_EM * size
+
+
+def _setup_history(count: int) -> None:
+    """The last renderings, the newest at the right end."""
+    implot.setup_axes("renderings ago", "ms", 0, FIT)
+    implot.setup_axis_format(implot.ImAxis_.x1, "%.0f")
+    implot.setup_axis_limits(implot.ImAxis_.x1, -float(max(min(count, HISTORY), 10)), 0.0, implot.Cond_.always)
 
 
 def _scatter(finite: list[Point], points: list[Point], outdated: bool) -> None:

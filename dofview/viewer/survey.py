@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ from dofview.render.compare import psnr
 from dofview.render.reference import Quality
 from dofview.viewer.actions import Action
 from dofview.viewer.measurement import Measurement
-from dofview.viewer.tool import Tool
+from dofview.viewer.tool import Tool, Work
 from dofview.viewer.truth import REFERENCE, Truth
 
 if TYPE_CHECKING:
@@ -91,9 +92,13 @@ class Survey(Tool):
             app.report("the view has changed: measuring all was stopped")
             return
         truth = app.tool(Truth)
-        quality = app.accumulated.quality if app.settings.method == REFERENCE else truth.advance(app)
-        if Measurement(0.0, quality).done:
+        quality = truth.advance(app)
+        if truth.done(app):
             self._step(app, truth, quality)
+
+    def work(self, app: App) -> Iterable[Work]:
+        if self.running:
+            yield Work("measuring all", self.progress(app), self.cancel)
 
     def busy(self, app: App) -> bool:
         return self.running

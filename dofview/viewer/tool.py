@@ -6,6 +6,7 @@ and a line in `TOOLS` of `viewer/tools.py`.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -74,6 +75,15 @@ class Placed(NamedTuple):
     layer: int = 0
 
 
+class Work(NamedTuple):
+    """Something that takes a while: what it is, how far it has come, 0 to 1 or None, and how to stop it."""
+
+    what: str
+    share: float | None
+    cancel: Callable[[], object]
+    button: str = "Cancel"
+
+
 class Tool:
     """What a tool may do; each method is called once a frame, in this order."""
 
@@ -109,6 +119,10 @@ class Tool:
 
     def windows(self, app: App) -> None:
         """Draw windows and popups of its own."""
+
+    def work(self, app: App) -> Iterable[Work]:
+        """What it is at beside the window, to be shown with progress and a way to stop it."""
+        return ()
 
     def busy(self, app: App) -> bool:
         """Whether it needs another frame though nobody touched anything."""

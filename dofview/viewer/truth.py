@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
@@ -12,7 +15,7 @@ from dofview.lens import Distribution
 from dofview.render.reference import Quality
 from dofview.settings import Settings
 from dofview.viewer.measurement import Measurement, add_views
-from dofview.viewer.tool import Tool
+from dofview.viewer.tool import Tool, Work
 
 if TYPE_CHECKING:
     from dofview.viewer.app import App
@@ -30,6 +33,7 @@ class Truth(Tool):
         self.quality = NO_VIEWS
         self._key: object = None
         self._asked = -1
+        self._enough: object = None
         self._mean: tuple[object, Image] | None = None
 
     def settings(self, app: App) -> Settings:
@@ -57,7 +61,7 @@ class Truth(Tool):
             self._key, self.quality = key, app.accumulated.quality
         elif key != self._key:
             self._key, self.quality = key, NO_VIEWS
-        if self._asked != frame and app.settings.method != REFERENCE and not Measurement(0.0, self.quality).done:
+        if self._asked != frame and app.settings.method != REFERENCE and not self.done(app):
             reference = app.pipeline.reference(self.settings(app), antialias=self.antialiased(app))
             add_views(app, reference)
             self.quality = reference.quality()
@@ -65,8 +69,21 @@ class Truth(Tool):
         return self.quality
 
     def done(self, app: App) -> bool:
-        """Whether there are as many views as are wanted."""
-        return self._key == self.key(app) and Measurement(0.0, self.quality).done
+        """Whether there are as many views as are wanted, or somebody said that these are enough."""
+        key = self.key(app)
+        return self._key == key and (Measurement(0.0, self.quality).done or key == self._enough)
+
+    def work(self, app: App) -> Iterable[Work]:
+        if app.settings.method == REFERENCE and not app.accumulated.done:
+            yield Work("reference", app.accumulated.progress, partial(self._be_content, app), "Enough")
+        elif self.busy(app):
+            yield Work("reference", self.progress, partial(self._be_content, app), "Enough")
+
+    def _be_content(self, app: App) -> None:
+        """Add no more views to this reference."""
+        self._enough = self.key(app)
+        if app.settings.method == REFERENCE:
+            app.accumulated = replace(app.accumulated, most_views=max(app.accumulated.quality.views, 1))
 
     @property
     def progress(self) -> float:

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from dofview.viewer.app import App
 
 ORBIT_DEG_PER_PICTURE = 180.0
+BACKDROP = 0xB0141210
+"""Behind text on the picture, ABGR."""
+
 _BUTTONS = (
     imgui.ButtonFlags_.mouse_button_left
     | imgui.ButtonFlags_.mouse_button_right
@@ -71,9 +74,11 @@ def _navigate(app: App, height: float, hovered: bool, active: bool):
 
 def _write_figures(app: App, rect: Rect) -> None:
     """The lines that app and tools left this frame, in the upper left corner."""
-    draw_list = imgui.get_window_draw_list()
-    size = imgui.get_font_size()
-    for number, (line, faint) in enumerate(app.take_figures()):
-        position = (rect.left + 0.7 * size, rect.top + (0.5 + 1.3 * number) * size)
-        draw_list.add_text((position[0] + 1.0, position[1] + 1.0), 0xC0000000, line)
-        draw_list.add_text(position, 0xFFA0A0A0 if faint else 0xFFFFFFFF, line)
+    draw_list, size = imgui.get_window_draw_list(), imgui.get_font_size()
+    lines = app.take_figures()
+    width = max(imgui.calc_text_size(line).x for line, _ in lines)
+    left, top = rect.left + 0.8 * size, rect.top + 0.7 * size
+    corner = (left + width + 0.5 * size, top + 1.3 * size * len(lines) + 0.2 * size)
+    draw_list.add_rect_filled((left - 0.4 * size, top - 0.2 * size), corner, BACKDROP, 0.3 * size)
+    for number, (line, faint) in enumerate(lines):
+        draw_list.add_text((left, top + 1.3 * number * size), 0xFFB0B0B0 if faint else 0xFFFFFFFF, line)

@@ -20,13 +20,12 @@ LOGARITHMIC_FROM = 1000.0
 def edit(model: M, *, only: tuple[str, ...] = (), ranges: Mapping[str, tuple[float, float]] | None = None) -> M:
     """Show a control for every field (or `only` some) and return the model as the person left it.
 
-    `ranges` gives sliders a range that suits the scene where the declared one is far wider. Double-click types a value,
-    right-click goes back to the default.
+    `only` also orders them. `ranges` gives sliders a range that suits the scene where the declared one is far wider.
+    Double-click types a value, right-click goes back to the default.
     """
     changes: dict[str, Any] = {}
-    for name, info in type(model).model_fields.items():
-        if only and name not in only:
-            continue
+    for name in only or type(model).model_fields:
+        info = type(model).model_fields[name]
         before = getattr(model, name)
         after = _control(name, info, before, (ranges or {}).get(name))
         if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
@@ -40,11 +39,29 @@ def edit(model: M, *, only: tuple[str, ...] = (), ranges: Mapping[str, tuple[flo
     return model.model_validate({**model.model_dump(), **changes}) if changes else model
 
 
+UNITS = {"deg": "°", "px": "px", "mm": "mm", "ev": "EV", "s": "s", "hz": "Hz", "m": "m"}
+"""What the last word of a name says of its unit."""
+
+WORDS = {
+    "radius": "lens radius", "distribution": "shape of the lens", "vfov_deg": "angle of view", "tonemap": "tone curve",
+    "scale": "render scale",
+}  # fmt: skip
+"""Names that say more where they stand alone."""
+
+
 def label(name: str, info: FieldInfo) -> str:
     """What stands beside the control: the name in words, and the paper's symbol."""
     symbol = fields.extra(info, "symbol")
-    words = name.replace("_", " ")
+    head, _, last = name.rpartition("_")
+    words = WORDS.get(name, (head if head and last in UNITS else name).replace("_", " "))
     return f"{words} ({symbol})##{name}" if symbol else f"{words}##{name}"
+
+
+def unit(name: str, info: FieldInfo) -> str:
+    """The unit that is written after a value; empty where there is none or it needs more words."""
+    head, _, last = name.rpartition("_")
+    found = fields.extra(info, "unit") or (UNITS.get(last, "") if head else "")
+    return found if len(found) <= 3 else ""
 
 
 def plain(text: str) -> str:
@@ -65,25 +82,38 @@ def _control(name: str, info: FieldInfo, value: Any, wanted: tuple[float, float]
         return imgui.checkbox(text, value)[1]
     if isinstance(value, Enum):
         members = list(type(value))
-        chosen = imgui.combo(text, members.index(value), [fields.shown(m.value) for m in members])[1]
+        words = [fields.shown(m.value).replace("_", " ") for m in members]
+        chosen = imgui.combo(text, members.index(value), words)[1]
         return members[chosen]
     low, high = wanted or fields.bounds(info)[:2]
     if isinstance(value, int):
-        return imgui.slider_int(text, value, int(low or 0), int(high or 100), "%d", imgui.SliderFlags_.always_clamp)[1]
+        return _int_slider(text, value, int(low or 0), int(high or 100), unit(name, info))
     if isinstance(value, float):
-        return _float_slider(text, value, low, high)
+        return _float_slider(text, value, low, high, unit(name, info))
     imgui.label_text(text, fields.shown(value))
     return value
 
 
-def _float_slider(text: str, value: float, low: float | None, high: float | None) -> float:
+def _int_slider(text: str, value: int, low: int, high: int, after: str) -> int:
+    flags = imgui.SliderFlags_.always_clamp
+    if high - low >= LOGARITHMIC_FROM:
+        flags |= imgui.SliderFlags_.logarithmic
+    return imgui.slider_int(text, value, low, high, f"%d {after}".strip(), flags)[1]
+
+
+def _float_slider(text: str, value: float, low: float | None, high: float | None, after: str) -> float:
     low, high = low if low is not None else 0.0, high if high is not None else max(2.0 * abs(value), 1.0)
     flags = imgui.SliderFlags_.always_clamp
     spread = high / low if low > 0.0 else (high / 1e-3 if low == 0.0 else 1.0)
     if spread >= LOGARITHMIC_FROM:
         flags |= imgui.SliderFlags_.logarithmic
     shown = value if math.isfinite(value) else high
-    decimals = max(0, min(6, 3 - math.floor(math.log10(max(abs(shown), 1e-6)))))
-    format_ = f"%.{decimals}f" if math.isfinite(value) else "infinity"
-    changed, after = imgui.slider_float(text, shown, low, high, format_, flags)
-    return after if changed else value
+    format_ = f"%.{_decimals(shown, high)}f {after}".strip() if math.isfinite(value) else "infinity"
+    changed, chosen = imgui.slider_float(text, shown, low, high, format_, flags)
+    return chosen if changed else value
+
+
+def _decimals(value: float, high: float) -> int:
+    """As many as show four digits of the value; zero has as many as the end of its range."""
+    size = abs(value) or abs(high)
+    return max(0, min(6, 3 - math.floor(math.log10(max(size, 1e-6)))))

@@ -7,22 +7,33 @@ import os
 import sys
 from pathlib import Path
 
-from host import Context, Host, drive
-from imgui_bundle import imgui
+import av
+import numpy as np
+import OpenEXR
+from host import Context, Host, drive, press, until
+from PIL import Image
 
+from dofview.metrics import srgb_decode, srgb_encode
 from dofview.remember import read_note, read_preset
 from dofview.settings import Settings
 from dofview.viewer.app import App
-from dofview.viewer.output import Output
+from dofview.viewer.output import KEYFRAMES, KINDS, Output
+from dofview.viewer.shots import Shots
 
 
 def use(context: Context, app: App, host: Host) -> None:
     folder = Path.cwd()
+    HOST.append(host)
     context.yield_(6)
-    output = app.tool(Output)
+    before = app.settings
+    pictures(context, app, folder)
+    transparent(context, app, folder)
+    assert app.settings == before
+    films(context, app, folder)
 
-    context.key_press(int(imgui.Key.mod_ctrl) | int(imgui.Key.s))
-    context.yield_(4)
+
+def pictures(context: Context, app: App, folder: Path) -> None:
+    press(context, "s", "ctrl")
     (shot,) = folder.glob("dofview-*.png")
     assert read_note(shot).settings == app.settings
 
@@ -30,38 +41,115 @@ def use(context: Context, app: App, host: Host) -> None:
     lens = before.lens.model_copy(update={"focus_distance": before.lens.focus_distance * 2.0})
     app.settings = before.with_(lens=lens)
     context.yield_(4)
-    context.key_press(int(imgui.Key.mod_ctrl) | int(imgui.Key.z))
-    context.yield_(4)
+    press(context, "z", "ctrl")
     assert app.settings.lens == before.lens, "undo"
-    context.key_press(int(imgui.Key.mod_ctrl) | int(imgui.Key.mod_shift) | int(imgui.Key.z))
-    context.yield_(4)
+    press(context, "z", "ctrl", "shift")
     assert app.settings.lens == lens, "redo"
 
     app.open_any(str(shot))
-    for _ in range(200):
-        context.yield_()
-        if app.settings.lens == before.lens:
-            break
-    assert app.settings.lens == before.lens and app.settings.method == before.method, "restored from the picture"
+    until(context, lambda: app.settings == before, "restored from the picture")
 
-    context.key_press(int(imgui.Key.mod_ctrl) | int(imgui.Key.mod_shift) | int(imgui.Key.s))
+    press(context, "e", "ctrl")
+    (parts,) = folder.glob("dofview-*.exr")
+    with OpenEXR.File(str(parts)) as file:
+        assert [part.header["name"] for part in file.parts] == ["color", "depth", "coc"]
+        assert all(next(iter(part.channels.values())).pixels.shape[:2] == _shape(app) for part in file.parts)
+    app.settings = before.with_(method="mipmap", lens=lens)
     context.yield_(4)
+    app.open_any(str(parts))
+    until(context, lambda: app.settings == before, "restored from the EXR")
+
+    press(context, "s", "ctrl", "shift")
     (preset,) = folder.glob("preset-*.toml")
     restored, complaints = read_preset(preset, Settings())
     assert not complaints and restored.lens == app.settings.lens
+    for path in (shot, parts, preset):
+        path.unlink()
 
+
+def transparent(context: Context, app: App, folder: Path) -> None:
+    """Over its background, the transparent picture is the picture; where nothing is, it is clear."""
+    good = app.settings
+    away = good.camera.model_copy(update={"target": (0.0, 2.5, 0.0)})
+    shots, found = app.tool(Shots), {}
+    shots.transparent = True
+    for name in ("mipmap", "accumulation"):
+        lens = good.lens.model_copy(update={"radius": 0.1, "focus_distance": 3.0})
+        app.settings = good.with_(method=name, camera=away, lens=lens)
+        until(context, lambda: app.result is not None and not app.busy, f"{name} is there", 120.0)
+        context.yield_(2)
+        press(context, "s", "ctrl")
+        until(context, lambda: any(folder.glob("dofview-*.png")), f"{name} is saved", 120.0)
+        (path,) = folder.glob("dofview-*.png")
+        pixels = np.asarray(Image.open(path)).astype(float) / 255.0
+        path.unlink()
+        assert pixels.shape == (*_shape(app), 4)
+        found[name] = pixels[..., 3]
+        assert found[name].min() == 0.0 and found[name].max() == 1.0
+        share = ((found[name] > 0.02) & (found[name] < 0.98)).mean()
+        assert share > 0.02, "blurred edges are between"
+        background = np.asarray(app.settings.background_linear)
+        alpha = pixels[..., 3:]
+        over = srgb_encode(srgb_decode(pixels[..., :3]) * alpha + background * (1.0 - alpha))
+        kept = {}
+        host_pixels(context, app, kept)
+        error = np.abs(over - kept["shown"] / 255.0)
+        assert error.mean() < 1.5 / 255.0, (name, error.mean(), error.max())
+    assert np.abs(found["mipmap"] - found["accumulation"]).mean() < 0.1
+    shots.transparent = False
+    app.settings = good
+    until(context, lambda: not app.busy, "back")
+    context.yield_(2)
+
+
+def films(context: Context, app: App, folder: Path) -> None:
+    before, output = app.settings, app.tool(Output)
     output.path, output.seconds, output.fps = 1, 0.5, 10
     output.toggle(app)
-    for _ in range(400):
-        context.yield_()
-        if not output.recording:
-            break
+    until(context, lambda: not output.recording, "the turntable")
     (film,) = folder.glob("dofview-*.mp4")
-    import av
-
     with av.open(str(film)) as opened:
         assert sum(1 for _ in opened.decode(video=0)) == 5
-    assert math.isfinite(app.settings.lens.radius) and app.settings.lens == before.lens, "a film changes no settings"
+    assert math.isfinite(app.settings.lens.radius) and app.settings == before, "a film changes no settings"
+
+    output.path, output.kind = KEYFRAMES, KINDS.index("/%05d.png")
+    output.toggle(app)
+    assert not output.recording and "two views" in app.message
+    press(context, "m", "ctrl", "shift")
+    press(context, "left_arrow", "ctrl")
+    press(context, "m", "ctrl", "shift")
+    output.toggle(app)
+    until(context, lambda: not output.recording, "the keyframes")
+    (pictures,) = folder.glob("dofview-film-*")
+    names = sorted(path.name for path in pictures.iterdir())
+    assert names == [f"{number:05d}.png" for number in range(5)]
+    first, last = (np.asarray(Image.open(pictures / names[end])).astype(int) for end in (0, -1))
+    assert np.abs(first - last).mean() > 1.0, "from the first view to the last"
+
+    output.kind, output.seconds = KINDS.index(".webm"), 60.0
+    output.toggle(app)
+    context.yield_(3)
+    (work,) = output.work(app)
+    work.cancel()
+    context.yield_(2)
+    assert not output.recording and "stopped after" in app.message
+    app.settings = before
+    context.yield_(2)
+
+
+def _shape(app: App) -> tuple[int, int]:
+    width, height = app.settings.image.size
+    return height, width
+
+
+def host_pixels(context: Context, app: App, kept: dict[str, np.ndarray]) -> None:
+    """What is shown, read where OpenGL is."""
+    HOST[0].after = lambda app: kept.setdefault("shown", app.shown.pixels()[..., :3].astype(float))
+    until(context, lambda: "shown" in kept, "pixels")
+    HOST[0].after = lambda app: None
+
+
+HOST: list[Host] = []
 
 
 if __name__ == "__main__":

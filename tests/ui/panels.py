@@ -32,11 +32,11 @@ def use(context: Context, app: App, host: Host) -> None:
     context.yield_(2)
     assert app.settings.lens.radius > 0.0
 
-    context.item_input_value("**/exposure ev##exposure_ev", 2.0)
+    context.item_input_value("**/exposure##exposure_ev", 2.0)
     brighter = host.pixels(context)
     renders = app.scene_renders
     assert brighter.mean() > before.mean() + 10, "exposure brightens what is shown"
-    context.item_input_value("**/exposure ev##exposure_ev", 0.0)
+    context.item_input_value("**/exposure##exposure_ev", 0.0)
     context.yield_(3)
     assert app.scene_renders == renders, "exposure renders no scene"
 
