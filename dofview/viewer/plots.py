@@ -84,10 +84,8 @@ class Plots(Tool):
             imgui.text_disabled("Passes are timed from the next rendering on.")
             return
         clock = "wall clock around each pass" if app.gpu.profile.clock == "wall" else "timer queries"
-        height = HEIGHT_EM * imgui.get_font_size()
-        if not implot.begin_plot(
-            f"Passes of {app.settings.method}, ms ({clock})##passes", (WIDTH_EM * imgui.get_font_size(), height), QUIET
-        ):
+        title = f"Passes of {app.settings.method}, ms ({clock})##passes"
+        if not implot.begin_plot(title, _size(1.0), QUIET):
             return
         _setup_history(len(self.history))
         implot.setup_legend(implot.Location_.east, implot.LegendFlags_.outside)
@@ -105,10 +103,7 @@ class Plots(Tool):
 
     def _frames(self, app: App) -> None:
         """Milliseconds of whole renderings."""
-        height = 0.6 * HEIGHT_EM * imgui.get_font_size()
-        if not implot.begin_plot(
-            "Frames, ms##frames", (WIDTH_EM * imgui.get_font_size(), height), QUIET | implot.Flags_.no_legend
-        ):
+        if not implot.begin_plot("Frames, ms##frames", _size(0.7), QUIET | implot.Flags_.no_legend):
             return
         _setup_history(len(app.milliseconds))
         times = np.array(app.milliseconds[-HISTORY:], dtype=float)
