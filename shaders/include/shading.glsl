@@ -9,6 +9,7 @@ uniform sampler2D environment_map;
 #endif
 
 const float PI = 3.14159265;
+const float LAMP = 0.03;  // half the tangent of a lamp's angular radius: some 7 degrees across, as a softbox in a studio
 
 float distribution_ggx(float n_h, float alpha)
 {
@@ -30,7 +31,8 @@ vec3 direct_light(Surface surface, vec3 diffuse, vec3 f0, vec3 to_eye, vec3 to_l
 {
     float n_l = dot(surface.normal, to_light);
     if (n_l <= 0.0) return vec3(0.0);
-    float alpha = max(surface.roughness * surface.roughness, 0.002);
+    // As wide as the lamp's image, with the same energy (Karis: Real Shading in Unreal Engine 4, 2013, area lights).
+    float alpha = length(vec2(surface.roughness * surface.roughness, LAMP));
     vec3 halfway = normalize(to_light + to_eye);
     float n_v = max(dot(surface.normal, to_eye), 1e-4);
     float n_h = clamp(dot(surface.normal, halfway), 0.0, 1.0);

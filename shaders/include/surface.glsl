@@ -47,6 +47,16 @@ vec3 mapped_normal(vec3 normal)
 #endif
 }
 
+// A normal that turns within a pixel widens the highlight, which would alias otherwise (Tokuyoshi, Kaplanyan: Improved
+// Geometric Specular Antialiasing, 2019: the listing, with its kernel of σ² = 1/2π px² and its bound).
+float filtered_roughness(vec3 normal, float roughness)
+{
+    vec3 across = dFdx(normal) * exp2(lod_bias), along = dFdy(normal) * exp2(lod_bias);
+    float kernel = min(0.318310 * (dot(across, across) + dot(along, along)), 0.18);
+    float alpha = roughness * roughness;
+    return sqrt(sqrt(min(alpha * alpha + kernel, 1.0)));
+}
+
 Surface read_surface()
 {
     vec4 base = material.base_color * vertex.color;
@@ -64,6 +74,7 @@ Surface read_surface()
     surface.metallic *= mr.b;
     surface.roughness *= mr.g;
 #endif
+    surface.roughness = filtered_roughness(surface.normal, surface.roughness);
 #ifdef OCCLUSION_MAP
     float occlusion = texture(occlusion_map, map_uv(material.occlusion_uv0, material.occlusion_uv1), lod_bias).r;
     surface.occlusion = 1.0 + material.occlusion_strength * (occlusion - 1.0);
