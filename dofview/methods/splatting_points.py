@@ -243,5 +243,5 @@ def _hidden_image(recipe: Recipe, params: Params) -> Surfaces | None:
     hidden = Surfaces(recipe.image("hidden"), recipe.image("hidden inverse depth", components=1))
     with recipe.gpu.profile.section("splatting/hidden"):
         # Behind the limit is the same question that depth peeling asks of the surface before.
-        draw_scene(recipe.gpu, frame.scene, frame.projection(), hidden, lights=frame.lights, behind=limit)
+        draw_scene(recipe.gpu, frame.scene, frame.projection(), hidden, lights=frame.lights, behind=limit, sparse=True)
     return hidden

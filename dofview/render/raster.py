@@ -91,14 +91,15 @@ def draw_scene(
     behind: Image | None = None, reject: str | None = None, geometry: str | None = None,
     textures: Textures | None = None, blocks: Blocks | None = None, values: Mapping[str, object] | None = None,
     defines: Mapping[str, object] | None = None, framebuffer: moderngl.Framebuffer | None = None,
-    passed: moderngl.Query | None = None, draws: Runs | None = None,
+    passed: moderngl.Query | None = None, draws: Runs | None = None, sparse: bool = False,
 ) -> None:  # fmt: skip
     """Draw the scene's nearest surfaces into `into`: colour, then inverse depth (0 where nothing is).
 
     `behind`, an image of inverse depths, leaves out what is not farther than it, and everything where it is 0. `reject`
     names the GLSL file of another test that leaves fragments out (shaders/render/scene.frag); `textures`, `blocks` and
     `values` are what it reads. `geometry` names a geometry shader and `framebuffer` its layered target. `passed` counts
-    the samples that were drawn. `draws` are what to draw where that is known; else what the view can reach.
+    the samples that were drawn. `draws` are what to draw where that is known; else what the view can reach. `sparse`
+    says that little of the picture is open to what lies `behind`.
     """
     target = framebuffer or gpu.targets.framebuffer(into, depth=True)
     _clear(gpu, target, into, (*background, background_alpha))
@@ -118,9 +119,10 @@ def draw_scene(
 
     size, defines, seen = into[0].size, dict(defines or {}), in_view(scene, view) if draws is None else draws
     gpu.profile.count("pieces culled", seen.culled)
-    nearest_first = reject is not None and framebuffer is None and gpu.software
+    nearest_first = reject is not None and framebuffer is None and gpu.software and not sparse
     if nearest_first:
-        # It goes on shading fragments that it has discarded, and most are. Only a failed depth test stops it.
+        # It goes on shading fragments that it has discarded, and most are. Only a failed depth test stops it; a picture
+        # that is mostly closed has that already.
         run(gpu.targets.framebuffer(into[1:2], depth=True), "<", {**defines, "DEPTH_ONLY": 1})
     with passed or nullcontext():
         run(target, "==" if nearest_first else "<", defines)
