@@ -20,7 +20,7 @@ from dofview.methods import METHODS, method
 OPENS_WITH = "demo:foreground"
 PACE = Group("Timing", sort_key=4)
 
-Spec = Annotated[str, Parameter(name="SCENE", help="A .gltf, .glb or .obj file, or demo:NAME.")]
+Spec = Annotated[str, Parameter(name="SCENE", help="A .gltf, .glb, .obj, .ply, .stl or .off file, or demo:NAME.")]
 View = Annotated[
     Path | None, Parameter(name=("--view", "--lens"), help="JSON file with camera, lens, image and background.")
 ]

@@ -3,6 +3,7 @@
 demo:NAME[@SIZE]   a procedural scene of dofview/scene/demo.py
 .glb .gltf         our own glTF 2.0 reader, recognised by content first
 .obj               Wavefront OBJ with its .mtl
+.ply .stl .off     one mesh, through trimesh
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from dofview.scene.notes import one_line
 DEMO = "demo:"
 PAUSES = (0.0, 0.05, 0.2, 0.5)
 """Seconds to wait before each attempt to read files that are being written: exporters need a moment."""
-ACCEPTED = f"a .gltf, .glb or .obj file, or {DEMO}NAME"
+ACCEPTED = f"a .gltf, .glb, .obj, .ply, .stl or .off file, or {DEMO}NAME"
 
 
 @dataclass(frozen=True)
@@ -45,9 +46,19 @@ def _read_obj(data: bytes, name: str, folder: Folder) -> Scene:
     return obj.read(data, name, folder)
 
 
+def _mesh_reader(suffix: str) -> Reader:
+    def read(data: bytes, name: str, folder: Folder) -> Scene:
+        from dofview.scene import mesh
+
+        return mesh.read(data, name, folder, suffix)
+
+    return Reader(suffix[1:].upper(), lambda found, head: found == suffix, read)
+
+
 READERS = (
     Reader("glTF binary", lambda suffix, head: head[:4] == b"glTF", _read_gltf),
     Reader("Wavefront OBJ", lambda suffix, head: suffix == ".obj", _read_obj),
+    *map(_mesh_reader, (".ply", ".stl", ".off")),
     Reader(
         "glTF",
         lambda suffix, head: suffix in (".gltf", ".glb") or head.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{",

@@ -29,7 +29,7 @@ def ask() -> str | None:
     """Return a file the person chose, or None. Waits, so it is called from a thread."""
     from imgui_bundle import portable_file_dialogs
 
-    kinds = ["Scenes", "*.glb *.gltf *.obj", "All files", "*"]
+    kinds = ["Scenes", "*.glb *.gltf *.obj *.ply *.stl *.off", "All files", "*"]
     dialog = portable_file_dialogs.open_file("Open", "", kinds)
     # Its own way of waiting would hold up every other thread.
     while not dialog.ready(0):
