@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
 import numpy as np
 import pytest
 
@@ -10,16 +12,31 @@ from dofview.gl.context import Gpu
 from dofview.methods import METHODS
 from dofview.stress import shapes
 from dofview.stress.bench import Bench
-from dofview.stress.row import Measured, Row, bounds
-from dofview.stress.run import ROWS, chosen_rows, stress
+from dofview.stress.row import Measured, Row, Skipped, bounds
+from dofview.stress.run import ROWS, cases, chosen_rows, stress
 
 CHEAP = (1, 2, 4, 5, 13, 19, 24)
 
 
 def test_every_bound_has_a_value(gpu: Gpu):
     """A row measures as many values as it has bounds for; the reference stands for all methods."""
-    report = stress(gpu, methods=("accumulation",), size=48, views=16)
-    assert report.cases == sum("accumulation" in row.bounds for row in ROWS)
+    rows = tuple(row for row in ROWS if not row.rarely)
+    report = stress(gpu, rows=rows, methods=("accumulation",), size=48, views=16)
+    assert report.cases == sum("accumulation" in row.bounds for row in rows)
+
+
+def test_what_cannot_be_tried_here_is_said(gpu: Gpu):
+    def lacking(bench: Bench, method: str, random: np.random.Generator) -> list[Measured]:
+        raise Skipped("no such thing here")
+
+    report = stress(gpu, rows=(Row(97, "lacking", bounds(1.0), lacking),), methods=("mipmap",), size=16)
+    assert report.skipped == {97: "no such thing here"} and not report.cases and not report.failures
+
+
+def test_rows_that_take_long_get_every_fourth_seed():
+    slow = Row(96, "slow", bounds(1.0), lambda bench, method, random: [], rarely=True)
+    seeds = [seed for _, _, seed in islice(cases((slow,), ("mipmap",), 3), 3)]
+    assert seeds == [3, 7, 11]
 
 
 def test_a_broken_bound_is_reported_with_the_command_that_repeats_it(gpu: Gpu):

@@ -38,6 +38,8 @@ def run_stress(
         gpu.release()
         gpu.ctx.release()
     _table(report, rows)
+    for number, reason in report.skipped.items():
+        print(f"row {number} left out: {reason}")
     print(f"{report.cases} cases, {len(report.failures)} failures")
     return 1 if report.failures else 0
 

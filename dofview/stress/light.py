@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import tempfile
+from pathlib import Path
+
 import numpy as np
 
 from dofview.lens import Distribution, Lens, focal_px
 from dofview.metrics import srgb_encode
+from dofview.render.environment import Lighting
+from dofview.scene.load import load
 from dofview.scene.model import Material, Picture, Sampler, Texture
 from dofview.stress import shapes
 from dofview.stress.bench import CAMERA, Bench, lens_for
@@ -52,7 +57,8 @@ def one_pixel(bench: Bench, method: str, random: np.random.Generator, coc_px: fl
 
 
 def finite(bench: Bench, method: str, random: np.random.Generator) -> list[Measured]:
-    """Light of 65504 and an empty scene: every pixel is a number."""
+    """Light of 65504, an empty scene, and a file with vertices and colours that are no numbers, lit by a picture with
+    texels that are none: every pixel is a number."""
     bright = [shapes.unlit((6.5e4, 6.5e4, 0.0)), shapes.textured(random), shapes.unlit((0.0, 0.0, 0.0))]
     scene = shapes.scene(shapes.scattered(random, materials=3), bright)
     lens = Lens(radius=10 ** random.uniform(-2.0, 0.3), focus_distance=random.uniform(1.0, 8.0))
@@ -60,7 +66,31 @@ def finite(bench: Bench, method: str, random: np.random.Generator) -> list[Measu
     wrong = 0
     for pictured in (scene, shapes.scene([], [])):
         wrong += int((~np.isfinite(bench.picture(pictured, settings))).sum())
+    with tempfile.TemporaryDirectory() as folder:
+        broken, sky = _broken_files(Path(folder), random)
+        lit = settings.with_(light=Lighting(environment=str(sky)))
+        wrong += int((~np.isfinite(bench.picture(load(broken), lit))).sum())
     return [Measured("pixels that are not numbers", wrong)]
+
+
+def _broken_files(folder: Path, random: np.random.Generator) -> tuple[Path, Path]:
+    """A model and an environment, each with numbers that are none."""
+    import OpenEXR
+
+    odd = ("nan", "inf", "-inf", "1e39", "-0", "1e-45")
+    vertices = [[f"{x:.3f}" for x in (*random.uniform(-2, 2, 3), *random.uniform(0, 1, 3))] for _ in range(300)]
+    for number in range(0, 300, 7):
+        vertices[number][random.integers(6)] = str(random.choice(odd))
+    model = folder / "broken.obj"
+    faces = [f"f {3 * i + 1} {3 * i + 2} {3 * i + 3}" for i in range(100)]
+    model.write_text("\n".join([*("v " + " ".join(vertex) for vertex in vertices), *faces]))
+    texels = random.uniform(0.0, 6e4, (16, 32, 3)).astype(np.float32)
+    texels[random.integers(16, size=20), random.integers(32, size=20)] = [np.nan, np.inf, -np.inf]
+    sky = folder / "broken.exr"
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with OpenEXR.File(header, {"RGB": texels}) as file:
+        file.write(str(sky))
+    return model, sky
 
 
 def linear_light(bench: Bench, method: str, random: np.random.Generator) -> list[Measured]:

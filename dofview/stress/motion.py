@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from dofview.gl.context import Gpu
 from dofview.lens import Distribution, Lens, focal_px
+from dofview.pipeline import Pipeline
 from dofview.sampling import lens_samples
 from dofview.scene.model import Material, Picture, Texture
+from dofview.settings import ImageSettings, Settings
 from dofview.stress import shapes
 from dofview.stress.bench import CAMERA, Bench
 from dofview.stress.row import Measured, Row, bounds
@@ -45,6 +48,44 @@ def convergence(bench: Bench, method: str, random: np.random.Generator) -> list[
         errors.append(float(np.sqrt(np.mean(np.square(apart)))))
     slope = float(np.polyfit(np.log(counts), np.log(errors), 1)[0])
     return [Measured("log-log slope", slope), Measured("RMSE at 64", errors[2]), Measured("RMSE at 1024", errors[-1])]
+
+
+def picture_convergence(bench: Bench, method: str, random: np.random.Generator) -> list[Measured]:
+    """The reference's error against the analytic picture of a blurred slanted edge, from 16 to 4096 views."""
+    errors = picture_errors(bench.gpu, random)
+    counts = np.array(list(errors))
+    slope = float(np.polyfit(np.log(counts), np.log(list(errors.values())), 1)[0])
+    return [Measured("log-log slope to 4096 views", slope), Measured("RMSE at 4096", errors[4096])]
+
+
+def picture_errors(gpu: Gpu, random: np.random.Generator, size: int = 48) -> dict[int, float]:
+    """RMS error of a picture of `size` px by number of views, 2⁴ to 2¹², each twice what it was."""
+    angle, shift = random.uniform(0.0, 2.0 * np.pi), random.uniform(-0.2, 0.2) * size
+    across, along = np.array([np.cos(angle), np.sin(angle), 0.0]), np.array([-np.sin(angle), np.cos(angle), 0.0])
+    depth, half = random.uniform(2.0, 3.5), 20.0
+    unit = depth / focal_px(size, CAMERA.vfov_deg)
+    edge = across * shift * unit + [0.0, 0.0, 5.0 - depth]
+    white = shapes.card(edge - half * across, half * across, half * along)
+    lens = Lens(radius=random.uniform(0.15, 0.3) * size / focal_px(size, CAMERA.vfov_deg) / abs(0.2 - 1.0 / depth))
+    coc = lens.radius * focal_px(size, CAMERA.vfov_deg) * abs(0.2 - 1.0 / depth)
+    rows, columns = np.indices((size, size)) + 0.5
+    offset = shift - (columns - size / 2) * across[0] - (size / 2 - rows) * across[1]
+    share = np.clip(offset / coc, -1.0, 1.0)
+    truth = 0.5 + (share * np.sqrt(1.0 - share**2) + np.arcsin(share)) / np.pi
+    pipeline = Pipeline(gpu, shapes.scene([white], [shapes.unlit((1.0, 1.0, 1.0))]))
+    settings = Settings(
+        camera=CAMERA, lens=lens, background_linear=(0.0, 0.0, 0.0), image=ImageSettings(size=(size, size))
+    )
+    errors = {}
+    try:
+        reference = pipeline.reference(settings)
+        while reference.views < 4096:
+            reference.add(max(reference.views, 16))
+            picture = pipeline.reference_picture(settings).pixels()[..., 0]
+            errors[reference.views] = float(np.sqrt(np.mean((picture - truth) ** 2)))
+    finally:
+        pipeline.release()
+    return errors
 
 
 def bokeh_picture(bench: Bench, method: str, random: np.random.Generator) -> list[Measured]:
@@ -101,4 +142,6 @@ ROWS = (
     Row(17, "smooth sliders", bounds((3.0, 1.5)), smooth),
     Row(18, "aperture picture", bounds(0.9, 0.9, 0.9, None, None, None), bokeh_picture),
     Row(20, "more sheets than layers", bounds(8.0), stacked),
+    Row(28, "convergence of pictures",
+        bounds((-0.5, 0.001), None, None, None, None, None), picture_convergence),
 )  # fmt: skip

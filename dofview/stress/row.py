@@ -15,6 +15,10 @@ COLUMNS = ("accumulation", "splatting", "multiview", "layered", "pyramid", "mipm
 """The order in which a row gives its bounds: the reference, then the methods."""
 
 
+class Skipped(Exception):
+    """A row cannot be tried on this machine; the message says what is missing."""
+
+
 class Measured(NamedTuple):
     """One measured value; `at_least` says on which side of the bound it must lie."""
 
@@ -25,12 +29,16 @@ class Measured(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """An invariant. `check(bench, method, random)` measures as many values as the row has bounds for the method."""
+    """An invariant. `check(bench, method, random)` measures as many values as the row has bounds for the method.
+
+    One that is tried `rarely`, because it takes many times as long as others, gets every fourth seed.
+    """
 
     number: int
     name: str
     bounds: Mapping[str, Sequence[float]]
     check: Callable[[Bench, str, np.random.Generator], list[Measured]]
+    rarely: bool = False
 
     def methods(self) -> tuple[str, ...]:
         """The methods it says something about."""
