@@ -93,3 +93,16 @@ def test_a_comparison_shows_the_method_as_it_is(gpu: Gpu, name: str):
     pipeline.release()
     assert kept.shape == (size[1], 3 * size[0], 3)
     assert np.mean(np.abs(kept[:, : size[0]] - fresh) > 4.0) < 0.01
+
+
+def test_the_python_of_the_readme_runs(capsys: pytest.CaptureFixture) -> None:
+    """As it stands there, on a small scene and picture with few views."""
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), flags=re.S)
+    names: dict = {}
+    for block in blocks:
+        smaller = (
+            block.replace('"scene.glb"', '"demo:crossing@3k"').replace("(640, 480)", "(48, 36)").replace("256", "8")
+        )
+        exec(smaller, names)
+    names["pipeline"].release()
+    assert names["picture"].shape[2] == 3 and len(capsys.readouterr().out.splitlines()) == 4
