@@ -13,6 +13,7 @@ from dofview.gl.context import Gpu
 from dofview.lens import Distribution, Lens
 from dofview.methods import multiview
 from dofview.methods.method import Recipe
+from dofview.methods.multiview_cones import average
 from dofview.methods.multiview_layers import Kind, Layering, Layers, build, fit
 from dofview.pipeline import Pipeline
 from dofview.render.frame import Frame
@@ -194,6 +195,27 @@ def test_cones_do_not_let_light_through_a_slanted_floor(gpu: Gpu):
         picture = pipeline.render(settings.with_(lens=lens)).pixels()
         assert np.abs(picture[50:] - 0.5).max() <= 0.005
     pipeline.release()
+
+
+def test_cones_read_layers_averaged_over_their_squares(planes: Pipeline):
+    """Against numpy: each square holds the mean of what it covers of its layer; in focus it is the texel itself."""
+    frame, layers = layers_of(planes, "exact")
+    cones = average(Recipe(frame, "multiview", multiview.Params()), layers, 0.6)
+    sides = np.maximum(0.6 * np.abs(frame.coc.radius_px(np.mean(layers.slabs.bounds(), axis=0))), 1.0)
+    assert sides.min() == 1.0 and sides.max() > 2.0
+    width, height = frame.size
+    source = layers.images["layer_color"].pixels()[:, ::-1].astype(float)
+    found = cones.images["layer_color"].pixels()[:, ::-1]
+    for k, side in enumerate(sides):
+
+        def weights(length: int, side: float = side) -> np.ndarray:
+            low = (np.arange(length)[:, None] - length / 2) * side + length / 2
+            covered = np.minimum(low + side, np.arange(length) + 1.0) - np.maximum(low, np.arange(length))
+            return np.maximum(covered, 0.0) / side
+
+        mean = np.einsum("yj,jic,xi->yxc", weights(height), source[k], weights(width))
+        inside = np.s_[height // 2 - 4 : height // 2 + 4, width // 2 - 6 : width // 2 + 6]
+        assert np.abs(found[k][inside] - mean[inside]).max() < 2e-3
 
 
 def test_two_crossing_bars_are_displaced_as_in_the_reference(gpu: Gpu):

@@ -16,6 +16,7 @@ from dofview.gl.targets import Image
 from dofview.lens import focal_px
 from dofview.methods.method import Params as BaseParams
 from dofview.methods.method import Recipe
+from dofview.methods.multiview_cones import NO_CONES, Cones, average
 from dofview.methods.multiview_culling import Culling, Mask, mask
 from dofview.methods.multiview_layers import (
     MOST_LAYERS,
@@ -124,23 +125,21 @@ class ViewBlock(BaseModel):
 
 def render(frame: Frame, params: Params) -> Image:
     """Draw the layers, find which of them each pixel can see, trace."""
-    if params.skip and params.show is Show.PICTURE and frame.in_focus(SHARP_PX):
+    if params.skip and params.show is Show.PICTURE and frame.in_focus(SHARP_PX, picture=False):
         return frame.pinhole().color
     recipe = Recipe(frame, "multiview", params)
     count = params.layers if params.spacing is Spacing.BUDGET else count_for_growth(frame, params.growth)
     kind = Kind(fit(frame, count, params.overlap), params.layering, params.detail, params.view_dependent, params.cones)
     kind = affordable(frame, kind, params.memory * 2.0**20)
-    layers, detail = build(recipe, kind), kind.detail
-    points = lens_points(frame, params)
+    layers, points = build(recipe, kind), lens_points(frame, params)
     # Noise moves a sample within the square that is its share of the disc.
-    width = math.sqrt(math.pi / params.samples) if params.jitter is Jitter.NOISE else 0.0
-    # A trilinear fetch of texels as wide as the cone reads three of them across, at two levels.
-    footprint = 3.0 * params.cone_width / math.sqrt(params.samples) if params.cones else 0.0
-    reach = mask(recipe, params.culling, layers, detail, float(np.abs(points).max()) + width / 2, footprint)
+    noise = math.sqrt(math.pi / params.samples) if params.jitter is Jitter.NOISE else 0.0
+    cones = average(recipe, layers, params.cone_width / math.sqrt(params.samples)) if params.cones else NO_CONES
+    reach = mask(recipe, params.culling, layers, float(np.abs(points).max()) + noise / 2, cones.footprint)
     result = recipe.image("result")
-    grid = {"detail": float(detail), "detail_shift": detail_shift(detail), "mask_shift": reach.shift}
+    grid = {"detail": float(layers.detail), "detail_shift": detail_shift(layers.detail), "mask_shift": reach.shift}
     if params.show in (Show.PICTURE, Show.PROBES):
-        _trace(recipe, params, layers, reach, result, {**grid, "noise_width": width})
+        _trace(recipe, params, layers, cones, reach, result, {**grid, "noise_width": noise})
     else:
         recipe.draw(
             "show.frag", result, blocks={"Slabs": layers.slabs}, values=grid, mask=reach.image,
@@ -166,19 +165,21 @@ def _points_key(frame: Frame, params: Params) -> tuple:
 
 
 def _trace(
-    recipe: Recipe, params: Params, layers: Layers, reach: Mask, into: Image, values: dict[str, object]
+    recipe: Recipe, params: Params, layers: Layers, cones: Cones, reach: Mask, into: Image, values: dict[str, object]
 ) -> None:  # fmt: skip
     frame = recipe.frame
     blocks: dict[str, BaseModel] = {"Slabs": layers.slabs}
-    textures = {**layers.images, "mask": reach.image, "noise": _noise(recipe), "lens_points": _points(recipe, params)}
+    textures = {**layers.images, **cones.images, "mask": reach.image, "noise": _noise(recipe)}
+    textures["lens_points"] = _points(recipe, params)
     if layers.defines:
         blocks |= {"View": _view(frame), "Lights": frame.lights.block}
         textures |= frame.lights.textures
     # What decides on code is compiled in: a software rasteriser runs both sides of every branch.
     options = {"PROBES": params.probes, "CONES": params.cones, "JITTER": list(Jitter).index(params.jitter)}
     recipe.draw(
-        "trace.frag", into, blocks=blocks, defines={**options, **layers.defines, **frame.lights.defines}, **textures,
-        values={**values, "background": frame.background, "guard": frame.guard},
+        "trace.frag", into, blocks=blocks, images=textures,
+        defines={**options, **layers.defines, **frame.lights.defines},
+        values={**values, "cone_width": cones.width, "background": frame.background, "guard": frame.guard},
     )  # fmt: skip
 
 

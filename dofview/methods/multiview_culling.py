@@ -14,9 +14,7 @@ import numpy as np
 
 from dofview.gl.targets import Image
 from dofview.methods.method import Recipe
-from dofview.methods.multiview_layers import MOST_LAYERS, Layers, Slabs
-
-TILE = 4
+from dofview.methods.multiview_layers import MOST_LAYERS, TILE, Layers, Slabs, occupied
 
 
 class Culling(StrEnum):
@@ -34,18 +32,18 @@ class Mask(NamedTuple):
     shift: int
 
 
-def mask(recipe: Recipe, culling: Culling, layers: Layers, detail: int, extent: float, footprint: float) -> Mask:
+def mask(recipe: Recipe, culling: Culling, layers: Layers, extent: float, footprint: np.ndarray) -> Mask:
     """Find the layers in reach of each pixel's rays.
 
-    `extent` is the largest coordinate of a lens sample, lens radii; `footprint` what a ray reads around itself, pixels
-    per pixel of CoC radius.
+    `extent` is the largest coordinate of a lens sample, lens radii; `footprint` how far around itself a ray reads each
+    layer, pixels, (slabs.count,).
     """
-    reach = reach_px(recipe, layers.slabs, extent + footprint)
+    reach = reach_px(recipe, layers.slabs, extent, footprint)
     match culling:
         case Culling.TILES:
-            found = Mask(_by_tiles(recipe, layers, detail, reach), TILE.bit_length() - 1)
+            found = Mask(_by_tiles(recipe, layers, reach), TILE.bit_length() - 1)
         case Culling.N_BUFFER:
-            found = Mask(_by_n_buffer(recipe, layers, detail, reach), 0)
+            found = Mask(_by_n_buffer(recipe, layers, reach), 0)
         case _:
             found = Mask(recipe.image("mask", (1, 1), components=1, dtype="u4"), 31)
             found.image.write(np.full((1, 1, 1), (1 << layers.slabs.count) - 1, np.uint32))
@@ -53,42 +51,39 @@ def mask(recipe: Recipe, culling: Culling, layers: Layers, detail: int, extent: 
     return found
 
 
-def reach_px(recipe: Recipe, slabs: Slabs, extent: float) -> np.ndarray:
+def reach_px(recipe: Recipe, slabs: Slabs, extent: float, footprint: np.ndarray) -> np.ndarray:
     """How far from its pixel a ray can look while it passes each layer, pixels, (MOST_LAYERS,) int32."""
     reach = np.zeros(MOST_LAYERS, np.int32)
     if slabs.count == 0:
         return reach
-    fronts = slabs.nearest - slabs.step * np.arange(slabs.count)
-    backs = np.append(fronts[1:], slabs.farthest)
+    fronts, backs = slabs.bounds()
     margin = slabs.overlap * slabs.step
-    ends = recipe.frame.coc.radius_px(np.stack([fronts + margin, backs - margin]))
+    widest = np.abs(recipe.frame.coc.radius_px(np.stack([fronts + margin, backs - margin]))).max(axis=0)
     # A pixel for rounding, one for the texel beside it.
-    reach[: slabs.count] = np.minimum(np.ceil(np.abs(ends).max(axis=0) * extent) + 2.0, max(recipe.frame.size))
+    reach[: slabs.count] = np.minimum(np.ceil(widest * extent + footprint) + 2.0, max(recipe.frame.size))
     return reach
 
 
-def _by_tiles(recipe: Recipe, layers: Layers, detail: int, reach: np.ndarray) -> Image:
+def _by_tiles(recipe: Recipe, layers: Layers, reach: np.ndarray) -> Image:
     """Tiles of 4 by 4 pixels, each layer's bits spread by its own reach, along one axis and then the other."""
-    width, height = recipe.frame.size
-    size = (-(-width // TILE), -(-height // TILE))
-    held, across, spread = (recipe.image(name, size, 1, "u4") for name in ("tiles", "tiles across", "mask"))
-    recipe.draw("tiles.frag", held, values={"tile": TILE}, occupied=layers.occupied)
+    across, spread = (recipe.image(name, layers.tiles.size, 1, "u4") for name in ("tiles across", "mask"))
     tiles = -(-reach // TILE)
-    for source, into, axis in ((held, across, (1, 0)), (across, spread, (0, 1))):
-        recipe.draw(
-            "spread.frag", into, tiles=source,
-            values={"axis": axis, "reach": tiles.tobytes(), "count": layers.slabs.count, "farthest": int(tiles.max())},
-        )  # fmt: skip
+    # Bit k of texel d: whether layer k reaches d tiles far.
+    reaching = (tiles[None, :] >= np.arange(tiles.max() + 1)[:, None]) @ (1 << np.arange(MOST_LAYERS, dtype=np.int64))
+    table = recipe.image("reaching", (len(reaching), 1), 1, "u4")
+    table.write(reaching.astype(np.uint32)[None, :, None])
+    for source, into, axis in ((layers.tiles, across, (1, 0)), (across, spread, (0, 1))):
+        recipe.draw("spread.frag", into, tiles=source, reaching=table, values={"axis": axis})
     return spread
 
 
-def _by_n_buffer(recipe: Recipe, layers: Layers, detail: int, reach: np.ndarray) -> Image:
+def _by_n_buffer(recipe: Recipe, layers: Layers, reach: np.ndarray) -> Image:
     """The paper's N-buffer (Décoret 2005): level i says what lies in the 2^i by 2^i window that begins at a pixel, so
     four fetches at the level of its size answer for any window. A bit per layer in one image stands for a buffer of
     least depths per layer: as a layer's depths lie inside the layer, the test on them is whether there are any."""
     names = ("n-buffer", "n-buffer next", "mask", "mask next")
     level, larger, before, after = (recipe.image(name, None, 1, "u4") for name in names)
-    recipe.draw("tiles.frag", level, values={"tile": 1}, occupied=layers.occupied)
+    occupied(recipe, layers.slabs, layers.images, level, layers.detail)
     recipe.draw("n_buffer_start.frag", before)
     most = int(math.log2(2 * int(reach.max()) + 1))
     for i in range(most + 1):

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from dofview.gl.layered import DepthArray
@@ -25,7 +26,7 @@ MOST_LAYERS = 32
 
 # A geometry shader may write 1024 floats; a vertex of the scene has 20 of them with its position and layer.
 PER_INVOCATION = 17
-MOST_MIP_LEVEL = 7
+TILE = 4
 LEAST_BLUR_PX = 1.0 / 16.0
 
 
@@ -48,6 +49,12 @@ class Slabs(BaseModel):
     overlap: float
     count: int
 
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Greatest and least 1/z of each layer, without the overlap, (count,) each."""
+        edges = self.nearest - self.step * np.arange(self.count + 1)
+        edges[self.count :] = self.farthest
+        return edges[:-1], edges[1:]
+
 
 class Kind(NamedTuple):
     """What is put into the layers, and how; `exact` colours are kept in 32 bits instead of 16."""
@@ -56,7 +63,7 @@ class Kind(NamedTuple):
     layering: Layering
     detail: int
     surfaces: bool
-    mipmaps: bool
+    cones: bool
     exact: bool = False
 
     def formats(self) -> dict[str, tuple[int, str]]:
@@ -68,18 +75,24 @@ class Kind(NamedTuple):
         return formats
 
     def texel_bytes(self) -> float:
-        """Bytes per texel of a layer, mip levels and depth buffer included."""
+        """Bytes per texel of a layer, what cones read and depth buffer included."""
         held = sum(components * int(dtype[1]) for components, dtype in self.formats().values())
-        return (held * 4.0 / 3.0 if self.mipmaps else held) + 4.0
+        return (2.0 * held if self.cones else held) + 4.0
 
 
 class Layers(NamedTuple):
     """Arrays of `detail` times the canvas size by sampler name: layer_color with coverage in alpha, layer_inverse_depth
-    (0: empty), and the properties of surfaces where asked for; and an image with one bit per layer."""
+    (0: empty), and the properties of surfaces where asked for; and an image with one bit per layer for tiles of
+    `TILE` by `TILE` pixels that says which layers hold anything there."""
 
     slabs: Slabs
     images: Mapping[str, Image]
-    occupied: Image
+    tiles: Image
+    kind: Kind
+
+    @property
+    def detail(self) -> int:
+        return self.kind.detail
 
     @property
     def defines(self) -> dict[str, int]:
@@ -92,7 +105,7 @@ def fit(frame: Frame, count: int, overlap: float) -> Slabs:
     What is nearest on the canvas is always visible. What is farthest may not be; it is bounded by the scene's box,
     which can be far larger than anything a ray meets, so it does not get a share of the steps.
     """
-    view = frame.depth_range()
+    view = frame.depth_range(picture=False)
     if view.nearest == 0.0:
         return Slabs(nearest=1.0, step=1.0, farthest=0.0, overlap=overlap, count=0)
     step = max((view.nearest - view.farthest_surface) / count, view.nearest * 1e-5)
@@ -106,7 +119,7 @@ def fit(frame: Frame, count: int, overlap: float) -> Slabs:
 
 def count_for_growth(frame: Frame, growth_px: float) -> int:
     """Layers needed for a CoC growth of at most `growth_px` each; the growth is larger where that would be too many."""
-    view = frame.depth_range()
+    view = frame.depth_range(picture=False)
     growth = abs(frame.coc.scale) * (view.nearest - view.farthest_surface)
     return min(max(math.ceil(growth / growth_px), 1), MOST_LAYERS - 1)
 
@@ -116,7 +129,7 @@ def affordable(frame: Frame, kind: Kind, most_bytes: float) -> Kind:
 
     With everything in focus finer layers have nothing to add, and the picture is the pinhole's to the last bit.
     """
-    view = frame.depth_range()
+    view = frame.depth_range(picture=False)
     widest = max(abs(float(frame.coc.radius_px(depth))) for depth in (view.nearest, view.farthest_surface))
     if widest < LEAST_BLUR_PX:
         kind = kind._replace(detail=1, exact=True)
@@ -132,19 +145,22 @@ def build(recipe: Recipe, kind: Kind) -> Layers:
     frame, slabs = recipe.frame, kind.slabs
     if not _can_layer(frame, slabs.count):
         kind = kind._replace(layering=Layering.PASSES)
-    images = _images(recipe, kind, "")
-    occupied = recipe.image("occupied layers", components=1, dtype="u4")
-    kept = [frame.cache.holds((frame.geometry_key, kind), image) for image in (*images.values(), occupied)]
+    images = images_of(recipe, kind, "")
+    across, down = (-(-side // TILE) for side in frame.size)
+    tiles = recipe.image("tiles", (across, down), components=1, dtype="u4")
+    kept = [frame.cache.holds((frame.geometry_key, kind), image) for image in (*images.values(), tiles)]
     if not all(kept):
         if slabs.count:
             with recipe.gpu.profile.section("multiview/layers"):
                 _DRAW[kind.layering](recipe, kind, images)
-                if kind.mipmaps:
-                    for name in images.keys() - {"layer_inverse_depth"}:
-                        images[name].texture.build_mipmaps(0, MOST_MIP_LEVEL)
-        source = {"layer_inverse_depth": images["layer_inverse_depth"]}
-        recipe.draw("occupied.frag", occupied, blocks={"Slabs": slabs}, defines={"DETAIL": kind.detail}, **source)
-    return Layers(slabs, images, occupied)
+        occupied(recipe, slabs, images, tiles, TILE * kind.detail)
+    return Layers(slabs, images, tiles, kind)
+
+
+def occupied(recipe: Recipe, slabs: Slabs, images: Mapping[str, Image], into: Image, side: int) -> None:
+    """Set a bit for each layer that holds a surface in the `side` by `side` texels of one of `into`."""
+    depths = images["layer_inverse_depth"]
+    recipe.draw("occupied.frag", into, blocks={"Slabs": slabs}, defines={"SIDE": side}, layer_inverse_depth=depths)
 
 
 def detail_shift(detail: int) -> float:
@@ -152,11 +168,11 @@ def detail_shift(detail: int) -> float:
     return (detail - 1) / (2.0 * detail)
 
 
-def _images(recipe: Recipe, kind: Kind, prefix: str, layers: int | None = None) -> dict[str, Image]:
+def images_of(recipe: Recipe, kind: Kind, prefix: str, layers: int | None = None) -> dict[str, Image]:
     """The arrays of `kind` (or plain images, for `layers` 0) by sampler name."""
     size, layers = _size(recipe.frame, kind), max(kind.slabs.count, 1) if layers is None else layers
     return {
-        name: recipe.image(prefix + name.replace("_", " "), size, components, dtype, kind.mipmaps, layers)
+        name: recipe.image(prefix + name.replace("_", " "), size, components, dtype, layers=layers)
         for name, (components, dtype) in kind.formats().items()
     }
 
@@ -168,7 +184,7 @@ def _draw_exact(recipe: Recipe, kind: Kind, images: dict[str, Image]) -> None:
 
 def _draw_paper(recipe: Recipe, kind: Kind, images: dict[str, Image]) -> None:
     """Once, each triangle in the layer of its farthest corner alone; then every texel is moved to where it belongs."""
-    raw = _images(recipe, kind._replace(mipmaps=False), "raw ")
+    raw = images_of(recipe, kind, "raw ")
     _draw_once(recipe, kind, raw, {"FARTHEST": 1})
     for k in range(kind.slabs.count):
         draw(
@@ -180,7 +196,7 @@ def _draw_paper(recipe: Recipe, kind: Kind, images: dict[str, Image]) -> None:
 
 def _draw_passes(recipe: Recipe, kind: Kind, images: dict[str, Image]) -> None:
     """Once per layer, for drivers that cannot write layers with a depth each."""
-    one = _images(recipe, kind._replace(mipmaps=False), "one ", layers=0)
+    one = images_of(recipe, kind, "one ", layers=0)
     for k in range(kind.slabs.count):
         draw_scene(
             recipe.gpu, recipe.frame.scene, _projection(recipe.frame, kind), tuple(one.values()),
@@ -205,10 +221,11 @@ def _draw_once(recipe: Recipe, kind: Kind, images: dict[str, Image], defines: di
     defines = {
         **defines, "INVOCATIONS": -(-kind.slabs.count // most), "MOST_LAYERS": most, "MOST_VERTICES": 3 * most,
     }  # fmt: skip
+    near, _ = depth_range(recipe.frame.scene, recipe.frame.camera)
     draw_scene(
         recipe.gpu, recipe.frame.scene, _projection(recipe.frame, kind), into, blocks={"Slabs": kind.slabs},
         framebuffer=recipe.gpu.targets.framebuffer(into, depth=True), geometry="methods/multiview/layers.geom",
-        **_drawing(recipe, kind, defines),
+        values={"closest": 1.0 / near}, **_drawing(recipe, kind, defines),
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-// Sends a triangle to every layer it overlaps; the fragment test keeps of each only what lies inside. With FARTHEST to
+// Sends a triangle to every layer it overlaps; each keeps only what lies inside. With FARTHEST to
 // the layer of its farthest corner alone, as in Lee 2009 section 4.2, which a second pass has to put right.
 #if INVOCATIONS > 1
 layout(triangles, invocations = INVOCATIONS) in;
@@ -9,6 +9,8 @@ layout(triangles) in;
 layout(triangle_strip, max_vertices = MOST_VERTICES) out;
 
 #include "methods/multiview/slabs.glsl"
+
+uniform float closest;  // greatest 1/z that is drawn
 
 in Vertex
 {
@@ -33,6 +35,15 @@ int layer_at(float inverse_depth, float margin)
     return int(clamp(k, 0.0, float(slabs.count - 1)));
 }
 
+// Near and far plane of layer `k`: what lies outside is cut off before it is shaded, as a software rasteriser shades what
+// a fragment test leaves out. The test decides only at the cuts, where they lie within `margin` of a layer of them.
+float depth_in_layer(int k, float w, float margin)
+{
+    float front = k == 0 ? closest : slab_front(k) + margin * slabs.step;
+    float back = slab_back(k) - margin * slabs.step;
+    return ((front + back) * w - 2.0) / (front - back);
+}
+
 void main()
 {
     float nearest = 0.0, farthest = 3e38;
@@ -46,13 +57,17 @@ void main()
     int last = layer_at(farthest, 0.0), first = last;
 #else
     // A little more than the overlap, for what rounding between the stages may do.
-    int first = layer_at(nearest, -slabs.overlap - 1e-3), last = layer_at(farthest, slabs.overlap + 1e-3);
+    float margin = slabs.overlap + 1e-3;
+    int first = layer_at(nearest, -margin), last = layer_at(farthest, margin);
 #endif
     int base = gl_InvocationID * MOST_LAYERS;
     for (int k = max(first, base); k <= min(last, base + MOST_LAYERS - 1); ++k) {
         for (int i = 0; i < 3; ++i) {
             gl_Layer = k;
             gl_Position = gl_in[i].gl_Position;
+#ifndef FARTHEST
+            gl_Position.z = depth_in_layer(k, gl_Position.w, margin);
+#endif
             slab = k;
             vertex.position = corner[i].position;
             vertex.normal = corner[i].normal;

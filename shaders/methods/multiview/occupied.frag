@@ -1,4 +1,4 @@
-// One bit per layer: set where the layer holds a surface in any of the pixel's DETAIL by DETAIL texels.
+// One bit per layer: set where the layer holds a surface in any of a square of SIDE by SIDE texels.
 #include <Slabs>
 
 uniform sampler2DArray layer_inverse_depth;
@@ -7,17 +7,23 @@ out uint occupied;
 
 void main()
 {
-    ivec2 texel = ivec2(gl_FragCoord.xy) * DETAIL;
+    ivec2 from = ivec2(gl_FragCoord.xy) * SIDE, size = textureSize(layer_inverse_depth, 0).xy;
     occupied = 0u;
     for (int k = 0; k < slabs.count; ++k) {
-#if DETAIL == 2 && __VERSION__ >= 400
-        vec4 depths = textureGather(layer_inverse_depth, vec3(vec2(texel + 1) / vec2(textureSize(layer_inverse_depth, 0).xy), k));
-        bool any_ = any(greaterThan(depths, vec4(0.0)));
+        float nearest = 0.0;
+#if SIDE % 2 == 0 && __VERSION__ >= 400
+        // Four texels at once; beyond the border it reads those at the border again.
+        vec4 four = vec4(0.0);
+        for (int y = 1; y < SIDE; y += 2)
+            for (int x = 1; x < SIDE; x += 2)
+                four = max(four, textureGather(layer_inverse_depth, vec3(vec2(from + ivec2(x, y)) / vec2(size), k)));
+        nearest = max(max(four.x, four.y), max(four.z, four.w));
 #else
-        bool any_ = false;
-        for (int i = 0; i < DETAIL * DETAIL; ++i)
-            any_ = any_ || texelFetch(layer_inverse_depth, ivec3(texel + ivec2(i % DETAIL, i / DETAIL), k), 0).r > 0.0;
+        for (int i = 0; i < SIDE * SIDE; ++i) {
+            ivec2 texel = min(from + ivec2(i % SIDE, i / SIDE), size - 1);
+            nearest = max(nearest, texelFetch(layer_inverse_depth, ivec3(texel, k), 0).r);
+        }
 #endif
-        if (any_) occupied |= 1u << k;
+        if (nearest > 0.0) occupied |= 1u << k;
     }
 }

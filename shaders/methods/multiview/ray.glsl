@@ -40,7 +40,8 @@ float height(ivec2 texel, int k, float front, float scale)
 // position (Lee 2009 section 4.3): probe where the surface would be if it were straight between what is known at the
 // two ends. The first probe assumes the layer's bounds (t = 1/2). While nothing has been met, the ends are looked at. An
 // end not looked at is as high as what was met; an empty one is at the bound that makes the ray cross: the back at the
-// start, the front at the end. Says whether the ray meets a surface, and at which t.
+// start, the front at the end. Says whether the ray meets a surface, and at which t; -1
+// where no probe found any.
 bool intersect(int k, float front, float back, vec2 a, vec2 b, out float t)
 {
     float scale = 1.0 / (front - back);
@@ -66,14 +67,19 @@ bool intersect(int k, float front, float back, vec2 a, vec2 b, out float t)
             // Nothing yet: the ends, if they are elsewhere; with one probe only the middle is looked at.
             if (met == EMPTY) estimate = probes == 1 && ivec2(floor(a)) != texel ? 0.0 : 1.0;
             bool same = ivec2(floor(mix(a, b, estimate))) == texel;
+#if CONES
+            // A cone sees beside the ray whether there is anything to look for.
+            more = hit && !same && probes < PROBES;
+#else
             // Looking at the ends does not count.
             if (probes == 1 && !hit && PROBES > 1) most = PROBES + 2;
             more = !same && probes < (met == EMPTY ? min(most, 3) : most);
+#endif
             // Another texel counts only once it is looked at.
             if (same || more) t = estimate;
         }
     } while (more);
-    if (!hit) t = 0.5;
+    if (!hit) t = -1.0;
     // Still behind the end of this layer: the next one holds it too.
     return hit && (met <= 1.0 || k + 1 == slabs.count);
 }

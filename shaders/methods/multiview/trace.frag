@@ -28,12 +28,6 @@ int lowest_bit(uint bits)
 #endif
 }
 
-// Mip level whose texels are as wide as the cone where the circle of confusion is `c`.
-float cone_level(float c)
-{
-    return log2(max(params.cone_width * inversesqrt(float(params.samples)) * abs(c) * detail, 1.0));
-}
-
 // What the ray meets, premultiplied by how much of it is stopped, by surfaces or by the background inside the canvas.
 vec4 ray(vec2 start, vec2 lens_point, uint layers)
 {
@@ -47,13 +41,18 @@ vec4 ray(vec2 start, vec2 lens_point, uint layers)
         float front = slab_front(k), back = slab_back(k), t;
         vec2 a = ray_at(start, lens_point, front), b = ray_at(start, lens_point, back);
         bool found = intersect(k, front, back, a, b, t);
+#if CONES
+        // A ray that passes by what its cone touches: if a surface goes on in the next layer it is at the back of this one,
+        // if it began in the last at the front. Between that and the middle, which is right for all else, is best for both.
+        if (t < 0.0) t = met.a > 0.0 ? 0.25 : 0.75;
+#endif
         vec2 q = mix(a, b, t);
         float inverse_depth = mix(front, back, t);
 #if CONES
         // Around a ray that passes by, part of its cone may still be stopped. Layers share one surface more often than
         // they hide each other, so what they cover adds up; where one ends and the next begins a little may be missing.
-        vec4 part = seen(q, k, cone_level(coc_radius(inverse_depth)), inverse_depth, lens_point);
-        float enough = met.a > 0.0 ? 0.8 : 0.996;
+        vec4 part = seen(q, k, inverse_depth, lens_point);
+        float enough = met.a > 0.0 ? 0.8 : 0.95;
         found = part.a > 0.0 && on_canvas(q);
         if (more && found) met += part * min(1.0, (1.0 - met.a) / part.a);
         found = found && met.a > enough;
@@ -69,7 +68,7 @@ vec4 ray(vec2 start, vec2 lens_point, uint layers)
 #if CONES
     if (hit) return met / met.a;
 #else
-    if (hit) return vec4(seen(at.xy, int(at.z), -1.0, depth, lens_point).rgb, 1.0);
+    if (hit) return vec4(seen(at.xy, int(at.z), depth, lens_point).rgb, 1.0);
 #endif
     return on_canvas(ray_at(start, lens_point, slabs.farthest)) ? met + (1.0 - met.a) * vec4(background, 1.0) : met;
 }

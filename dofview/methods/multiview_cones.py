@@ -1,0 +1,60 @@
+"""What cones read: each layer once more, averaged over squares as wide as a cone that passes its middle.
+
+The paper reads a mipmap at the level of the cone's width. As layers are thin in CoC, one width a layer is as good: then
+four texels of one image take the place of eight from two levels, and no mipmap of empty layers is built.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dofview.gl.passes import draw
+from dofview.gl.targets import Image
+from dofview.methods.method import Recipe
+from dofview.methods.multiview_layers import TILE, Layers
+
+PATCH = 16
+"""Side of what is averaged at once where a layer holds anything, pixels; a multiple of `TILE`."""
+
+
+class Cones(NamedTuple):
+    """Layers as cones read them, by the sampler names of the layers themselves; `width` is that of a cone, texels of a
+    layer per pixel of CoC radius, and `footprint` how far from itself a cone reads each layer, pixels."""
+
+    images: dict[str, Image]
+    width: float
+    footprint: np.ndarray
+
+
+NO_CONES = Cones({}, 0.0, np.zeros(1))
+
+
+def average(recipe: Recipe, layers: Layers, width: float) -> Cones:
+    """Average `layers` for cones of `width` times the CoC radius, unless that is there from an earlier frame.
+
+    Layer k becomes an image of 1/`square` of the size in the middle of its array (cones.glsl). Only patches in which a
+    layer holds anything are drawn.
+    """
+    frame, slabs, width = recipe.frame, layers.slabs, width * layers.detail
+    sources = {name: image for name, image in layers.images.items() if name != "layer_inverse_depth"}
+    images = {}
+    for name, image in sources.items():
+        size, components, dtype, count = image.size, image.shape.components, image.shape.dtype, image.shape.layers
+        images[name] = recipe.image(f"{name.replace('_', ' ')} in cones", size, components, dtype, True, count)
+    key = (frame.geometry_key, layers.kind, frame.lens_block, width)
+    kept = [frame.cache.holds(key, image) for image in images.values()]
+    if not all(kept) and slabs.count:
+        across, down = (-(-side // PATCH) for side in frame.size)
+        with recipe.gpu.profile.section("multiview/cones"):
+            draw(
+                recipe.gpu, "methods/multiview/cones.frag", tuple(images.values()),
+                textures={**sources, "tiles": layers.tiles}, blocks={**recipe.blocks, "Slabs": slabs}, clear=True,
+                vertex="methods/multiview/cones.vert", geometry="methods/multiview/cones.geom",
+                sprites=-(-across * down // 2), defines={**layers.defines, "PATCH": PATCH, "TILE": TILE},
+                values={"cone_width": width, "detail": layers.detail},
+            )  # fmt: skip
+    radii = np.abs(frame.coc.radius_px(np.mean(slabs.bounds(), axis=0)))
+    # A bilinear fetch reads two squares along each axis: as far as one and a half of them.
+    return Cones(images, width, 1.5 * np.maximum(width * radii, 1.0) / layers.detail)

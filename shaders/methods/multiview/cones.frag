@@ -1,0 +1,52 @@
+// A layer averaged over squares as wide as its cones, colour premultiplied by how much of the square is covered.
+#include "methods/multiview/cones.glsl"
+
+uniform sampler2DArray layer_color;
+#ifdef SURFACES
+uniform sampler2DArray layer_normal;
+uniform sampler2DArray layer_emissive;
+uniform sampler2DArray layer_occlusion;
+#endif
+
+flat in int slab;
+
+layout(location = 0) out vec4 color;
+#ifdef SURFACES
+layout(location = 1) out vec4 normal_roughness;
+layout(location = 2) out vec4 emissive_metallic;
+layout(location = 3) out float occlusion;
+#endif
+
+void main()
+{
+    float side = square(slab);
+    vec2 size = vec2(textureSize(layer_color, 0).xy);
+    vec2 low = (floor(gl_FragCoord.xy) - size / 2.0) * side + size / 2.0;
+    // What lies outside the canvas is not known: squares beyond the border are the first or last one inside.
+    low = mix(low, max(size - side, 0.0), greaterThan(low, size - 0.5));
+    low = mix(low, vec2(0.0), lessThan(low, 0.5 - vec2(side)));
+    vec2 high = min(low + side, size);
+    low = max(low, 0.0);
+    ivec2 first = ivec2(low), last = ivec2(ceil(high)) - 1;
+    vec4 sums[4] = vec4[4](vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+    float whole = 0.0;
+    for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+            vec2 inside = min(vec2(x + 1, y + 1), high) - max(vec2(x, y), low);
+            float weight = inside.x * inside.y;
+            ivec3 texel = ivec3(x, y, slab);
+            whole += weight;
+            sums[0] += weight * texelFetch(layer_color, texel, 0);
+#ifdef SURFACES
+            sums[1] += weight * texelFetch(layer_normal, texel, 0);
+            sums[2] += weight * texelFetch(layer_emissive, texel, 0);
+            sums[3] += weight * texelFetch(layer_occlusion, texel, 0);
+#endif
+        }
+    color = sums[0] / whole;
+#ifdef SURFACES
+    normal_roughness = sums[1] / whole;
+    emissive_metallic = sums[2] / whole;
+    occlusion = sums[3].r / whole;
+#endif
+}
