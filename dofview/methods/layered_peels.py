@@ -60,8 +60,12 @@ class Peels:
 
     def _filled(self, focus: Layer, back: Image | None) -> Image:
         """Half the size: what is behind the front buffer, its holes filled from around them."""
-        textures = self.textures | ({"back": back} if back else {})
-        defines = self.defines | ({"HAS_BACK": 1} if back else {})
+        # Two surfaces of a pixel are enough to make up a third from.
+        count = min(2, int(str(self.defines["PEELS"])))
+        unused = {f"color{m}" for m in range(count, 8)} | {"depths_last"}
+        textures = {name: image for name, image in self.textures.items() if name not in unused}
+        textures |= {"back": back} if back else {}
+        defines = self.defines | {"PEELS": count, **({"HAS_BACK": 1} if back else {})}
         with self.recipe.gpu.profile.section("layered/fill"):
             filled, _ = pull_push(
                 self.recipe.gpu, "layered/fill", self.frame.size, "methods/layered/known.glsl", textures=textures,
