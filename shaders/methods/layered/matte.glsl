@@ -106,18 +106,24 @@ float tail(float inverse_depth, float before)
 }
 
 #ifdef PRESENCE
-// 1 inside a surface, towards 0 where what is around a pixel lies farther than it by a quarter of the interval.
+// 1 inside a surface, towards 0 where what is around a pixel lies farther than it by a quarter of the interval. A steep
+// surface is no border: what lies farther on one side of the pixel and as much nearer on the other belongs to it, since
+// 1/z of a plane is linear in the picture.
 float presence(ivec2 pixel, float inverse_depth)
 {
-    const vec2 around[8] = vec2[8](vec2(1.0, 0.0), vec2(0.7, 0.7), vec2(0.0, 1.0), vec2(-0.7, 0.7), vec2(-1.0, 0.0),
-        vec2(-0.7, -0.7), vec2(0.0, -1.0), vec2(0.7, -0.7));
+    const vec2 around[4] = vec2[4](vec2(1.0, 0.0), vec2(0.7, 0.7), vec2(0.0, 1.0), vec2(-0.7, 0.7));
     ivec2 last = textureSize(depths_first, 0) - 1;
-    float quarter = max(0.25 * (anchors.y - anchors.z), 1e-37), found = 0.0;
-    for (int i = 0; i < 8; ++i) {
-        float other = texelFetch(depths_first, clamp(pixel + ivec2(round(reach * around[i])), ivec2(0), last), 0).r;
-        found += clamp(1.0 - (inverse_depth - other) / quarter, 0.0, 1.0);
+    float quarter = max(0.25 * (anchors.y - anchors.z), 1e-37), missing = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 step = ivec2(round(reach * around[i]));
+        vec2 farther = (inverse_depth
+            - vec2(texelFetch(depths_first, clamp(pixel + step, ivec2(0), last), 0).r,
+                texelFetch(depths_first, clamp(pixel - step, ivec2(0), last), 0).r)) / quarter;
+        vec2 alone = clamp(farther, 0.0, 1.0);
+        float bend = abs(farther.x + farther.y);
+        missing += min(farther.x, farther.y) < 0.0 ? min(alone.x + alone.y, bend) : alone.x + alone.y;
     }
-    return smoothstep(0.3, 1.0, found / 8.0);
+    return smoothstep(0.3, 1.0, 1.0 - missing / 8.0);
 }
 #endif
 
