@@ -114,7 +114,7 @@ def render(frame: Frame, params: Params) -> Image:
         if layers:
             side = Side(known, name, layers, skip=params.skip, inspect=params.inspect)
             buffers[name] = side.cascaded() if params.cascaded else side.separate()
-    return known.final(filled.focus, buffers, fill=params.fill and not exhausted)
+    return known.final(filled.focus, buffers, fill=params.fill and not known.complete)
 
 
 def layout(frame: Frame, params: Params) -> Plan:

@@ -19,8 +19,9 @@ NOTHING: Color = (0.0, 0.0, 0.0, 0.0)
 class Peels:
     """What is known of the scene: colours and inverse depths of the peels, and where they are.
 
-    `exhausted` says that no pixel has surfaces behind the last peel. `start` is what is behind all layers: the
-    background, if it can be seen at all and nothing unknown can be in front of it.
+    `exhausted` says that no pixel has surfaces behind the last peel. `start` is what the paper's layers are in front
+    of: the background, if it can be seen at all and nothing unknown can be in front of it; else it belongs to the
+    farthest layer. `complete` says that there is nothing to be filled in.
     """
 
     def __init__(self, recipe: Recipe, peels: Sequence[Surfaces], exhausted: bool, *, paper: bool):
@@ -28,13 +29,17 @@ class Peels:
         self.frame = recipe.frame
         visible = self.frame.depth_range().farthest == 0.0
         self.background: Color = (*self.frame.background, 1.0 if visible else 0.0)
-        self.start = self.background if visible and exhausted else NOTHING
+        self.start = self.background if visible and exhausted and paper else NOTHING
+        self.complete = exhausted and (paper or not visible)
         self.defines: dict[str, object] = {"PEELS": len(peels), **({"PAPER": 1} if paper else {})}
         self.depths = self._pack(peels)
         guard, size = self.frame.guard, self.frame.inner_size
         self.window = Window(guard, guard, guard + size[0], guard + size[1])
         self.textures = {f"color{m}": surfaces.color for m, surfaces in enumerate(peels)} | self.depths
-        self.content = self._content(visible and not exhausted)
+        self.content = self._content(visible and not (exhausted and paper))
+        if visible and not paper:
+            self.defines |= {"SKY": 1, "CELL": CELL, **({"EXHAUSTED": 1} if exhausted else {})}
+            self.textures["sky_distance"] = self._sky_distance()
 
     def draw(
         self, shader: str, into: Image, layer: Layer, *, values: dict | None = None, reach: float = 0.0, **how: object
@@ -66,6 +71,8 @@ class Peels:
         textures = {name: image for name, image in self.textures.items() if name not in unused}
         textures |= {"back": back} if back else {}
         defines = self.defines | {"PEELS": count, **({"HAS_BACK": 1} if back else {})}
+        if count < int(str(self.defines["PEELS"])):
+            defines.pop("EXHAUSTED", None)
         with self.recipe.gpu.profile.section("layered/fill"):
             filled, _ = pull_push(
                 self.recipe.gpu, "layered/fill", self.frame.size, "methods/layered/known.glsl", textures=textures,
@@ -89,6 +96,13 @@ class Peels:
             self.recipe.draw("depths.frag", list(images.values()), defines={"PEELS": len(peels)}, **sources)
         return images
 
+    def _sky_distance(self) -> Image:
+        """How far each cell is from background that can be seen, px."""
+        image = self.recipe.image("sky distance", self.content.shape[::-1], 1, linear=True)
+        if not self.frame.cache.holds((self.frame.geometry_key, "sky distance"), image):
+            image.write(self.content.sky_distance()[::-1, :, None])
+        return image
+
     def _content(self, background_counts: bool) -> Content:
         """Where surfaces are, cell by cell. Read back once per geometry key."""
         key = (self.frame.geometry_key, "layered content", self.defines["PEELS"], background_counts)
@@ -97,7 +111,10 @@ class Peels:
             extent = depths.nearest - depths.farthest_surface
             slices = SLICES / extent if extent > 0.0 else 0.0
             shape = (-(-size[0] // CELL), -(-size[1] // CELL))
-            images = [self.recipe.image("content", shape, dtype="u4"), self.recipe.image("content extremes", shape)]
+            images = [
+                self.recipe.image("content", shape, dtype="u4"), self.recipe.image("content extremes", shape),
+                self.recipe.image("content sky", shape, 1),
+            ]  # fmt: skip
             values = {"nearest": depths.nearest, "slices_per_depth": slices, "background_counts": background_counts}
             defines = {"CELL": CELL, "PEELS": self.defines["PEELS"]}
             self.recipe.draw("content.frag", images, defines=defines, values=values, **self.depths)

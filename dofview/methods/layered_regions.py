@@ -23,6 +23,9 @@ MARGIN = 0.9e-5
 
 ROUNDING = 2.0**-22
 
+FARTHEST_SKY = 48
+"""Cells. No blur lets the background shine through that far from where it is seen."""
+
 REACH = 5.0
 """How far a blur reaches, in σ: less than 1e-6 of it lies beyond."""
 
@@ -31,15 +34,20 @@ class Content:
     """In which slices of depth each cell has surfaces; arrays are (rows, columns), row 0 the bottom one, as in GL.
 
     Made of the two images of `content.frag`: `bits` (rows, columns, 4) uint32, nearest slice first, and `extremes`
-    (rows, columns, 4), the greatest and least 1/z in the first slice of a cell and in the last.
+    (rows, columns, 4), the greatest and least 1/z in the first slice of a cell and in the last; and of `sky`, 1 where
+    background can be seen.
     """
 
-    def __init__(self, nearest: float, slices_per_depth: float, bits: np.ndarray, extremes: np.ndarray):
+    def __init__(
+        self, nearest: float, slices_per_depth: float, bits: np.ndarray, extremes: np.ndarray,
+        sky: np.ndarray | None = None,
+    ):  # fmt: skip
         self.nearest = nearest
         self.slices_per_depth = slices_per_depth
         self._words = [np.ascontiguousarray(bits[..., i]) for i in range(4)]
         self._extremes = [np.ascontiguousarray(extremes[..., i], np.float64) for i in range(4)]
         self.shape = bits.shape[:2]
+        self._sky = np.zeros(self.shape, bool) if sky is None else sky[..., 0] > 0.0
 
     def cells(self, layer: Layer) -> np.ndarray:
         """The cells that may have something of `layer`, (rows, columns) bool: its interval, and those it shares."""
@@ -55,6 +63,16 @@ class Content:
             if wanted >> 32 * number & 0xFFFFFFFF:
                 found |= (word & np.uint32(wanted >> 32 * number & 0xFFFFFFFF)) != 0
         return found
+
+    def sky_distance(self) -> np.ndarray:
+        """How far the background is that can be seen, px, (rows, columns) float32; along the axes or diagonals, up to
+        `FARTHEST_SKY` cells."""
+        found = np.zeros(self.shape, np.float32)
+        near = self._sky
+        for _ in range(FARTHEST_SKY):
+            found += ~near
+            near = grown(near, 1)
+        return found * CELL
 
     def filled(self, plan: Plan) -> Plan:
         """The plan without layers that nothing belongs to. Their blur goes to the filters of those that remain."""

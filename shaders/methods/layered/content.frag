@@ -11,6 +11,7 @@ uniform bool background_counts;
 
 layout(location = 0) out uvec4 bits;
 layout(location = 1) out vec4 extremes;  // greatest and least 1/z of the first slice, greatest and least of the last
+layout(location = 2) out float sky;  // 1 where background can be seen
 
 uint slice_of(float inverse_depth)
 {
@@ -38,10 +39,12 @@ void main()
     ivec2 from = ivec2(gl_FragCoord.xy) * CELL, to = min(from + CELL, textureSize(depths_first, 0));
     float inverse_depths[PEELS], least = background_counts ? 0.0 : 1e-37;
     bits = uvec4(0u);
+    sky = 0.0;
     extremes = vec4(-1.0, 3e38, -1.0, 3e38);
     for (int y = from.y; y < to.y; ++y)
         for (int x = from.x; x < to.x; ++x) {
             surfaces(ivec2(x, y), inverse_depths);
+            if (inverse_depths[0] <= 0.0) sky = 1.0;
             for (int m = 0; m < PEELS; ++m) {
                 float z = inverse_depths[m];
                 if (z < least) continue;

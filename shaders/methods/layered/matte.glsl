@@ -12,6 +12,8 @@
 // is in between by how much of the surface is around (`presence`).
 // PAPER: anchors lie half way between layers; omega and omega-dot as printed. The tail is whole in front too and lies
 // under its own head, which widens every silhouette by a part of the blur between two layers.
+#include "include/lens.glsl"
+
 const float MARGIN = 1e-5;
 
 uniform sampler2D depths_first;
@@ -43,6 +45,16 @@ uniform vec4 anchors;  // inverse depths z_(k-2), z_(k-1), z_k, z_(k+1) of layer
 uniform float reach;  // px: how far the filter carries what is in this layer
 #endif
 uniform vec4 background;  // alpha 0: it cannot be seen, and what lies behind the last surface does not matter
+#ifdef SKY
+uniform sampler2D sky_distance;  // px from each cell of CELL x CELL pixels to the background that can be seen
+#endif
+
+// With EXHAUSTED no pixel has surfaces behind the last peel: there the background is as good as peeled.
+#ifdef EXHAUSTED
+const int COUNT = PEELS + 1;
+#else
+const int COUNT = PEELS;
+#endif
 
 struct Surface
 {
@@ -50,10 +62,21 @@ struct Surface
     vec4 color;  // alpha 0 or 1
 };
 
-void fetch_surfaces(ivec2 pixel, out Surface surfaces[PEELS])
+#ifdef SKY
+// How much of the background behind a surface counts: all near where it is seen, nothing where the surface's blur cannot
+// let it through. On steep surfaces, where layers do not quite close, it would shine through all the same.
+float shining(ivec2 pixel, float inverse_depth)
 {
-    float inverse_depths[8];
-    vec4 depths = texelFetch(depths_first, pixel, 0), colors[PEELS];
+    vec2 place = (vec2(pixel) + 0.5) / (float(CELL) * vec2(textureSize(sky_distance, 0)));
+    float sigma = lens.sigma * abs(coc_radius(inverse_depth));
+    return 1.0 - smoothstep(1.5, 3.0, texture(sky_distance, place).r / max(sigma, 1.0));
+}
+#endif
+
+void fetch_surfaces(ivec2 pixel, out Surface surfaces[COUNT])
+{
+    float inverse_depths[9];
+    vec4 depths = texelFetch(depths_first, pixel, 0), colors[COUNT];
     for (int i = 0; i < 4; ++i) inverse_depths[i] = depths[i];
     colors[0] = texelFetch(color0, pixel, 0);
 #if PEELS > 1
@@ -81,8 +104,16 @@ void fetch_surfaces(ivec2 pixel, out Surface surfaces[PEELS])
 #endif
     // Behind the last surface of a pixel is the background, which is known.
     vec4 behind_all = vec4(background.rgb, 1.0) * background.a;
-    for (int m = 0; m < PEELS; ++m)
+#ifdef EXHAUSTED
+    inverse_depths[PEELS] = 0.0;
+    colors[PEELS] = vec4(0.0);
+#endif
+    for (int m = 0; m < COUNT; ++m) {
         surfaces[m] = Surface(inverse_depths[m], inverse_depths[m] > 0.0 ? vec4(colors[m].rgb, 1.0) : behind_all);
+#ifdef SKY
+        if (m == 0) behind_all *= shining(pixel, inverse_depths[0]);
+#endif
+    }
 }
 
 // 0 at `near` and before, 1 at `far` and beyond, and exactly so within MARGIN of them: a wall in the plane of focus, a few
@@ -129,11 +160,11 @@ float presence(ivec2 pixel, float inverse_depth)
 
 // How present the first surface of the tail's interval is; what comes behind it in there has a share of 0 or 1. Asked
 // once for all surfaces of a pixel, because a software rasteriser runs both sides of every branch.
-float first_presence(ivec2 pixel, Surface surfaces[PEELS])
+float first_presence(ivec2 pixel, Surface surfaces[COUNT])
 {
 #ifdef PRESENCE
     float before = 3e38, first = 0.0;
-    for (int m = 0; m < PEELS; ++m) {
+    for (int m = 0; m < COUNT; ++m) {
         if (before >= anchors.y) first = surfaces[m].inverse_depth;
         before = surfaces[m].inverse_depth;
     }
@@ -152,11 +183,11 @@ float covering(float share, float present)
 // The layer by itself, premultiplied.
 vec4 layer(ivec2 pixel)
 {
-    Surface surfaces[PEELS];
+    Surface surfaces[COUNT];
     fetch_surfaces(pixel, surfaces);
     vec4 sum = vec4(0.0);
     float before = 3e38, present = first_presence(pixel, surfaces);
-    for (int m = 0; m < PEELS; ++m) {
+    for (int m = 0; m < COUNT; ++m) {
         float z = surfaces[m].inverse_depth;
 #ifdef PAPER
         float omega = z >= anchors.z ? ramp(z, anchors.x, anchors.y) : m == 0 ? 1.0 - ramp(z, anchors.z, anchors.w) : 0.0;
@@ -177,10 +208,10 @@ vec4 under(vec4 front, ivec2 pixel)
 #ifdef PAPER
     return front + (1.0 - front.a) * layer(pixel);
 #else
-    Surface surfaces[PEELS];
+    Surface surfaces[COUNT];
     fetch_surfaces(pixel, surfaces);
     float before = 3e38;
-    for (int m = 0; m < PEELS; ++m) {
+    for (int m = 0; m < COUNT; ++m) {
         float z = surfaces[m].inverse_depth, left = max(1.0 - front.a, 0.0);
         float share = z > anchors.y ? 0.0 : z >= anchors.z ? min(tail(z, before), left) : head(z, before) * left;
         front += share * surfaces[m].color;
