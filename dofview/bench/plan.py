@@ -74,8 +74,10 @@ def quick() -> tuple[Sweep, ...]:
 
 
 def full() -> tuple[Sweep, ...]:
-    """Every quality at one blur, and there the other lens, more and fewer pixels, more and fewer triangles; the defaults
-    at every blur; every quality at two more."""
+    """Every quality at one blur, and there the other lens, more and fewer pixels, more and fewer triangles.
+
+    Then the defaults at every blur, and every quality at two more.
+    """
     sweep = Sweep()
     one = replace(sweep, coc_px=(16.0,), every_quality=False, frames=3)
     background = replace(one, scenes=("demo:background",), views=96)

@@ -176,7 +176,7 @@ def stress(
 def bench(
     *, out: Path = Path("bench"), quick: Annotated[bool, Parameter(negative="")] = False, scenes: str | None = None,
     methods: str | None = None, coc: str | None = None, sizes: str | None = None, frames: int | None = None,
-    views: int | None = None, scheduler: str | None = None,
+    views: int | None = None, scheduler: str | None = None, skips: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:  # fmt: skip
     """Measure run time against error over scenes, methods, lenses and sizes, and write a report.
 
@@ -192,8 +192,14 @@ def bench(
         Mean CoC diameters, pixels.
     scheduler
         Address of a Dask scheduler whose workers measure.
+    skips
+        Measure instead what is left out of frames that do not need it, with and without.
     """
-    from dofview.cli.benching import run_bench
+    from dofview.cli.benching import run_bench, run_skips
+
+    if skips:
+        run_skips(out)
+        return
 
     run_bench(
         out, small=quick, scenes=scenes, methods=methods, coc=coc, sizes=sizes, frames=frames, views=views,

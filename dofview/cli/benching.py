@@ -13,6 +13,7 @@ from dofview.bench.pareto import pick, quality
 from dofview.bench.plan import Case, Sweep, cases, full, quick
 from dofview.bench.report import write_report
 from dofview.bench.run import bench, bench_on_dask, missing
+from dofview.bench.skips import SKIPS, measure_skips
 from dofview.bench.store import Store
 from dofview.cli.chosen import read_size
 from dofview.errors import SettingsError
@@ -36,6 +37,15 @@ def run_bench(
         store = bench(sweeps, out, on_case) if scheduler is None else bench_on_dask(sweeps, out, scheduler, on_case)
     write_report(store)
     print(f"{len(store.records)} cases in {out}: report.html, report.md, results.csv, results.json")
+
+
+def run_skips(out: Path) -> None:
+    """Measure what is left out of frames that do not need it into `out`."""
+    total = sum(len(skip.scenes) for skip in SKIPS)
+    with Progress(console=Console(stderr=True)) as progress:
+        task = progress.add_task("measuring", total=total)
+        measure_skips(out, lambda record: progress.update(task, advance=1, description=record["what"]))
+    print(f"{total} measurements in {out}: skips.md, skips.json")
 
 
 def run_pick(

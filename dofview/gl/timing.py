@@ -25,6 +25,7 @@ class Profile:
         self.now = time.perf_counter
         """What the wall is timed by; `bench` takes the time of the processor where that is the cost of a frame."""
         self.timing = False
+        self.done_anyway: frozenset[str] = frozenset()
         self.counts: Counter[str] = Counter()
         self.milliseconds: dict[str, float] = {}
         self._pending: list[tuple[str, moderngl.Query]] = []
@@ -40,6 +41,10 @@ class Profile:
         """Add to a counter: passes, fragments, draws, skipped work."""
         if amount:
             self.counts[name] += amount
+
+    def may_skip(self, name: str) -> bool:
+        """Whether the work that the counter `name` is of may be left out; without, to show that nothing needs it."""
+        return name not in self.done_anyway
 
     @contextmanager
     def section(self, name: str) -> Iterator[None]:

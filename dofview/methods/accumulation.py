@@ -40,7 +40,9 @@ def render(frame: Frame, params: Params) -> Image:
     total = None if params.progressive else params.views
     reference = Reference(frame, antialias=params.antialias, total=total)
     # Through a closed lens all views are one, unless they move inside the pixel.
-    views = 1 if params.skip and frame.lens.radius == 0.0 and not params.antialias else params.views
-    frame.gpu.profile.count("accumulation views skipped", params.views - views)
+    name = "accumulation views skipped"
+    closed = frame.lens.radius == 0.0 and not params.antialias
+    views = 1 if closed and params.skip and frame.gpu.profile.may_skip(name) else params.views
+    frame.gpu.profile.count(name, params.views - views)
     reference.add(views)
     return reference.mean()

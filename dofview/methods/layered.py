@@ -97,14 +97,16 @@ def render(frame: Frame, params: Params) -> Image:
     # What is visible, and what is behind it, until a peel finds nothing: then there is nothing unknown.
     found = [frame.peel(index) for index in range(params.peels)]
     peels = [surfaces for surfaces in found if surfaces is not None]
-    exhausted = len(peels) < params.peels
+    exhausted = len(peels) < params.peels or frame.peel_is_empty(len(peels) - 1)
     count("layered peels", len(peels))
+    count("layered peels skipped", params.peels - len(peels))
 
     known = Peels(recipe, peels, exhausted, paper=params.matting == Matting.PAPER)
 
     # Slices by blur; those without content are left out, and their blur is added to the next one's.
     slices = layout(frame, params)
-    filled = known.content.filled(slices) if params.skip else slices
+    may_skip = frame.gpu.profile.may_skip
+    filled = known.content.filled(slices) if may_skip("layered layers empty") else slices
     count("layered layers", len(filled))
     count("layered layers empty", len(slices) - len(filled))
 
@@ -112,7 +114,8 @@ def render(frame: Frame, params: Params) -> Image:
     buffers = {}
     for name, layers in (("front", filled.front), ("back", filled.back)):
         if layers:
-            side = Side(known, name, layers, skip=params.skip, inspect=params.inspect)
+            skip = params.skip and may_skip("layered tiles skipped")
+            side = Side(known, name, layers, skip=skip, inspect=params.inspect)
             buffers[name] = side.cascaded() if params.cascaded else side.separate()
     return known.final(filled.focus, buffers, fill=params.fill and not known.complete)
 

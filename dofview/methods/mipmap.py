@@ -71,7 +71,8 @@ def render(frame: Frame, params: Params) -> Image:
     nearest, farthest = frame.coc_range()
     top = _level(sigma * max(abs(nearest), abs(farthest)))
     most = most_levels(frame.size)
-    levels = min(math.ceil(top), most) if params.skip else most
+    may_skip = frame.gpu.profile.may_skip
+    levels = min(math.ceil(top), most) if params.skip and may_skip("mipmap levels skipped") else most
     frame.gpu.profile.count("mipmap levels skipped", most - levels)
     atlas = Atlas(frame.size, max(levels, 1))
     defines = {"LAST_LEVEL": atlas.levels}
@@ -83,7 +84,7 @@ def render(frame: Frame, params: Params) -> Image:
 
     # 4. Without it the blurred foreground would stop at its silhouette as if cut out.
     foreground: dict[str, Image] = {}
-    if params.smooth_foreground and (nearest < 0.0 or not params.skip):
+    if params.smooth_foreground and (nearest < 0.0 or not (params.skip and may_skip("mipmap smoothings skipped"))):
         don = recipe.image("DoN", level_size(frame.size, 1), components=1, linear=True)
         recipe.draw(
             "neighbours.frag", don, values={**atlas.values(), "top": top}, defines=defines, even_levels=even.zbn,

@@ -135,7 +135,8 @@ def render(frame: Frame, params: Params) -> Image:
     # Noise moves a sample within the square that is its share of the disc.
     noise = math.sqrt(math.pi / params.samples) if params.jitter is Jitter.NOISE else 0.0
     cones = average(recipe, layers, params.cone_width / math.sqrt(params.samples)) if params.cones else NO_CONES
-    reach = mask(recipe, params.culling, layers, float(np.abs(points).max()) + noise / 2, cones.footprint)
+    culling = params.culling if recipe.gpu.profile.may_skip("multiview layers skipped") else Culling.OFF
+    reach = mask(recipe, culling, layers, float(np.abs(points).max()) + noise / 2, cones.footprint)
     result = recipe.image("result")
     grid = {"detail": float(layers.detail), "detail_shift": detail_shift(layers.detail), "mask_shift": reach.shift}
     if params.show in (Show.PICTURE, Show.PROBES):

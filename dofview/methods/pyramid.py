@@ -113,7 +113,7 @@ def _plan(frame: Frame, params: Params, sigma: float) -> list[SubImage]:
     front, back = (sigma * coc for coc in frame.coc_range())
     limit = min(params.limit, most_levels(frame.size))
     subs = plan(front, back, sigma * frame.coc.at_infinity, blur_of, limit, params.matting)
-    if not params.skip or frame.coc.scale == 0.0:
+    if not params.skip or frame.coc.scale == 0.0 or not frame.gpu.profile.may_skip("pyramid sub-images skipped"):
         return subs
     found = occupancy(frame)
 
@@ -131,7 +131,7 @@ def _matted(recipe: Recipe, params: Params, sub: SubImage) -> Image:
     images = {"pinhole": surfaces.color, "inverse_depth": surfaces.inverse_depth}
     culling = {"nearest": sub.cull, "soft": sub.soft}
     filled: dict[str, Image] = {}
-    if sub.fills or not params.skip:
+    if sub.fills or not params.skip or not profile.may_skip("pyramid fills skipped"):
         with profile.section("pyramid/fill"):
             pair = pull_push(
                 recipe.gpu, "pyramid/fill", recipe.frame.size, CULLED, textures=images, blocks=recipe.blocks,

@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from dofview.gl.targets import Image
+from dofview.lens import Distribution
 from dofview.methods.method import Params as BaseParams
 from dofview.methods.method import Recipe
 from dofview.methods.splatting_choice import Computation, faster
@@ -32,6 +33,8 @@ QUALITIES = (
 
 SHARP_PX = 0.35
 """CoC radius up to which a sprite is its own pixel and the picture the pinhole's, px."""
+SHARP_PX_OF_SHAPES = 0.01
+"""The same for lenses that are no disc, whose sprites reach farther."""
 
 
 class HiddenTest(StrEnum):
@@ -104,7 +107,9 @@ class Params(BaseParams):
 
 def render(frame: Frame, params: Params) -> Image:
     """Return the picture on the canvas; the guard band itself is not blurred."""
-    if params.skip and not params.extrapolate and not params.inspect and frame.in_focus(SHARP_PX):
+    disc = frame.lens.distribution is Distribution.UNIFORM_DISC
+    plain = params.skip and not params.extrapolate and not params.inspect
+    if plain and frame.in_focus(SHARP_PX if disc else SHARP_PX_OF_SHAPES):
         return frame.pinhole().color
     recipe = Recipe(frame, "splatting", params)
     points = make_points(recipe, params)
@@ -117,7 +122,9 @@ def render(frame: Frame, params: Params) -> Image:
 
 def _gather(recipe: Recipe, points: Points, picture: Image, params: Params) -> None:
     frame = recipe.frame
-    reach, largest = search_map(recipe, points, params.skip)
+    # What is added without need, as the paper does, shows also where a pixel is opaque by itself.
+    skip = params.skip and (params.fill or not points.hidden) and recipe.gpu.profile.may_skip("splatting tiles copied")
+    reach, largest = search_map(recipe, points, skip)
     flags, textures = dict(points.flags), {"points": points.visible[0][0], "reach": reach, **points.sprite.textures}
     for level, hidden in enumerate(points.hidden):
         textures[f"hidden_points_{level}" if level else "hidden_points"] = hidden
@@ -134,9 +141,10 @@ def _gather(recipe: Recipe, points: Points, picture: Image, params: Params) -> N
     if params.inspect:
         into += [*(recipe.image(f"L{i}") for i in range(3)), recipe.image("fetches", components=1)]
         flags["INSPECT"] = 1
-    if params.skip and not _has_front(frame.coc_range(), params.delta):
+    without = "splatting front layers skipped"
+    if params.skip and recipe.gpu.profile.may_skip(without) and not _has_front(frame.coc_range(), params.delta):
         flags["NO_FRONT"] = 1
-        recipe.gpu.profile.count("splatting front layers skipped")
+        recipe.gpu.profile.count(without)
     if params.inspect or recipe.gpu.profile.timing:
         _count_tiles(recipe, reach, points.levels)
     recipe.draw(

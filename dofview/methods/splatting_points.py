@@ -227,8 +227,9 @@ def _hidden_image(recipe: Recipe, params: Params) -> Surfaces | None:
     frame = recipe.frame
     if not params.hidden:
         return None
-    if params.skip and frame.coc_range()[0] > -0.5:
-        recipe.gpu.profile.count("splatting hidden passes skipped")
+    without = "splatting hidden passes skipped"
+    if params.skip and recipe.gpu.profile.may_skip(without) and frame.coc_range()[0] > -0.5:
+        recipe.gpu.profile.count(without)
         return None
     surfaces = frame.pinhole()
     limit = _limit(recipe)

@@ -126,7 +126,12 @@ class Frame:
         if before is None:
             return None
         surfaces = self._surfaces(f"peel{index}", before.inverse_depth)
-        return surfaces if self.cache.values[(self.geometry_key, surfaces.color.name)] else None
+        ended = self.peel_is_empty(index) and self.gpu.profile.may_skip("layered peels skipped")
+        return None if ended else surfaces
+
+    def peel_is_empty(self, index: int) -> bool:
+        """Whether no surface was found behind `index` others; told of a peel that was asked for."""
+        return not self.cache.values.get((self.geometry_key, f"frame/peel{index}"), True)
 
     def depth_range(self, picture: bool = True) -> DepthRange:
         """Extremes of 1/z in the pinhole picture, guard band included. Read back once per geometry key.
@@ -154,7 +159,7 @@ class Frame:
         A method whose picture is the pinhole's up to some radius has nothing to do then.
         """
         near, far = self.coc_range(picture)
-        found = max(abs(near), abs(far)) <= within_px
+        found = max(abs(near), abs(far)) <= within_px and self.gpu.profile.may_skip("frames in focus")
         self.gpu.profile.count("frames in focus", int(found))
         return found
 

@@ -1,8 +1,8 @@
 // How far the pixels of a tile must look for points of each level whose sprites reach them, px: x among the visible ones,
 // y among the hidden ones, z among the second ones; -1 where they need not look at all.
 //
-// In a tile in focus every pixel is opaque by itself, so only what is in front can show; where nothing is, the tile is
-// copied. The map has the tiles of one level after the other, from the bottom.
+// In a tile in focus every pixel is opaque by itself, so only what is in front can show, or what is so little behind the
+// focus that it shares the pixel's layer; where nothing is, the tile is copied. The map has the tiles of one level after the other, from the bottom.
 #include "methods/splatting/point.glsl"
 #include "methods/splatting/sprite.glsl"
 
@@ -10,6 +10,9 @@ uniform sampler2D largest;
 uniform int farthest;  // tiles
 
 out vec4 reach;
+
+// Of a point behind the focus that shares a layer with one in focus: 0.35 px and a tolerance of twice that.
+const float MOST_SHARED = 1.1;
 
 bool is_sharp(ivec2 tile, int rows)
 {
@@ -37,7 +40,7 @@ void main()
             vec2 apart = max(abs(vec2(x, y) - vec2(tile)) * float(TILE) - float(TILE - 1), vec2(0.0));
             float distance = length(apart) - rim;
             vec4 there = texelFetch(largest, ivec2(x, y + row), 0);
-            vec3 radius = vec3(sharp ? there.x : max(there.x, there.y), sharp ? -1.0 : there.z, there.w);
+            vec3 radius = vec3(max(there.x, sharp ? min(there.y, MOST_SHARED) : there.y), sharp ? -1.0 : there.z, there.w);
             bvec3 reaches = greaterThan(radius * max(extent, 1.0), vec3(max(distance, -0.5)));
             reach.xyz = max(reach.xyz, mix(vec3(-1.0), radius, reaches));
         }

@@ -1,0 +1,51 @@
+"""The table of what is left out, as a page of Markdown, from the records of `bench.skips`."""
+
+from __future__ import annotations
+
+COLUMNS = ("method", "left out", "when", "seen", "counter", "scene", "count", "ms", "ms without", "gain",
+           "largest difference")  # fmt: skip
+
+NOTES = """\
+A rule is measured in a situation that gives it something to do, named under *seen*; where its counter stays at 0 the
+scene had nothing of the kind, and the two times differ by what timing is worth here. *Largest difference* is of linear
+light between the two pictures, over all pixels and channels.
+
+* **Frames in focus.** The rule of thumb is half a pixel. Measured against the method itself it is not equal: at a CoC
+  radius of 0.25 px the pictures differ by up to 0.05 (mipmap), 0.48 (multiview), 0.07 (layered) and 0.24 (pyramid) of
+  white at single pixels, for those methods filter as little as that, and the reference changes by as much. So each
+  method has the radius up to which its picture is the pinhole's (`SHARP_PX` in its module). Multiview through a closed
+  lens samples textures a little differently than the pinhole does, which is the difference in its row.
+* **Unchanged frames** draw nothing at all: the window renders when settings differ (`!=`) from those shown, and the
+  progressive reference goes on adding views only until it vouches for its target. Exposure and tone curve are of the
+  display and render nothing.
+* **Kept images.** Pinhole picture, peels and layers depend on scene, camera and size, not on the lens or the method.
+* **Hidden objects.** The reference asks once which pieces lie outside the union of all its frusta, not for each view.
+* **Layers without surfaces** of the layered method cost nothing by themselves, as no tile has anything of them. What is
+  left out is their small filters, whose blur goes to the next one's: a sum of Gaussians is a Gaussian up to sampling.
+"""
+
+
+def skip_page(content: dict) -> str:
+    """The page; `content` is what skips.json holds."""
+    machine, size = content["machine"], "x".join(map(str, content["size"]))
+    head = (
+        f"# What a frame does not need\n\nMade by `dofview bench --skips --out docs/benchmark`: "
+        f"{size}, mean CoC {content['mean_coc_px']:g} px unless a situation says otherwise, each with its method's own "
+        f"lens. {machine['renderer']}, {machine['processor']}; medians of frames in turn, by the {content['clock']}'s "
+        "clock.\n\n"
+    )
+    lines = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
+    before = None
+    for record in content["skips"]:
+        rule = (record["method"], record["what"], record["when"], record["seen"].rstrip("."), f"`{record['counter']}`")
+        shown = ("",) * len(rule) if rule == before else rule
+        before = rule
+        gain = f"{record['ms_without'] / record['ms']:.2f}" if record["count"] else "–"
+        figures = (record["scene"], str(record["count"]), f"{record['ms']:.1f}", f"{record['ms_without']:.1f}", gain,
+                   _difference(record))  # fmt: skip
+        lines.append("| " + " | ".join((*shown, *figures)) + " |")
+    return head + "\n".join(lines) + "\n\n" + NOTES
+
+
+def _difference(record: dict) -> str:
+    return "0" if record["max_difference"] == 0.0 else f"{record['max_difference']:.0e}"
