@@ -76,7 +76,7 @@ def quick() -> tuple[Sweep, ...]:
 def full() -> tuple[Sweep, ...]:
     """Every quality at one blur, and there the other lens, more and fewer pixels, more and fewer triangles.
 
-    Then the defaults at every blur, and every quality at two more.
+    Then the defaults at every blur.
     """
     sweep = Sweep()
     one = replace(sweep, coc_px=(16.0,), every_quality=False, frames=3)
@@ -85,9 +85,8 @@ def full() -> tuple[Sweep, ...]:
         replace(sweep, coc_px=(16.0,)),
         replace(one, distributions=tuple(kind.value for kind in (Distribution.UNIFORM_DISC, Distribution.GAUSSIAN))),
         replace(background, sizes=((256, 192), (512, 384), (1024, 768))),
-        replace(background, scenes=tuple(f"demo:background{count}" for count in ("@5k", "", "@60k", "@200k"))),
-        replace(sweep, coc_px=(32.0, 8.0, 64.0, 4.0), every_quality=False, frames=3),
-        replace(sweep, coc_px=(32.0, 8.0)),
+        replace(background, scenes=tuple(f"demo:background{count}" for count in ("@5k", "", "@60k", "@150k"))),
+        replace(sweep, coc_px=(32.0, 8.0, 64.0, 4.0), every_quality=False, frames=3, views=96),
     )
 
 

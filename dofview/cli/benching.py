@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.progress import Progress
@@ -25,7 +26,10 @@ def run_bench(
     frames: int | None, views: int | None, scheduler: str | None,
 ) -> None:  # fmt: skip
     """Measure a sweep into `out` and write its report there."""
-    sweeps = _chosen(quick() if small else full(), scenes, methods, coc, sizes, frames, views)
+    changes = _changes(scenes, methods, coc, sizes, frames, views)
+    sweeps: Sequence[Sweep] = quick() if small else full()
+    if changes:
+        sweeps = [dataclasses.replace(quick()[0] if small else Sweep(), **changes)]
     total = len(list(cases(sweeps)))
     with Progress(console=Console(stderr=True)) as progress:
         task = progress.add_task("measuring", total=total, completed=total - len(missing(sweeps, Store(out))))
@@ -68,12 +72,11 @@ def run_pick(
     print(f"dofview {scene} --method {chosen['method']} {flags}".rstrip())
 
 
-def _chosen(
-    sweeps: Sequence[Sweep], scenes: str | None, methods: str | None, coc: str | None, sizes: str | None,
-    frames: int | None, views: int | None,
-) -> Sequence[Sweep]:  # fmt: skip
-    """`sweeps`, or the last of them, which is the general one, alone with the lists that were given."""
-    changes: dict[str, object] = {}
+def _changes(
+    scenes: str | None, methods: str | None, coc: str | None, sizes: str | None, frames: int | None, views: int | None
+) -> dict[str, Any]:
+    """Fields of a sweep, as they were given."""
+    changes: dict[str, Any] = {}
     if scenes:
         changes["scenes"] = tuple(scenes.split(","))
     if methods:
@@ -88,7 +91,7 @@ def _chosen(
         changes["frames"] = _at_least_one(frames, "frames")
     if views is not None:
         changes["views"] = _at_least_one(views, "views")
-    return (dataclasses.replace(sweeps[-1], **changes),) if changes else sweeps
+    return changes
 
 
 def _number(text: str, name: str) -> float:
