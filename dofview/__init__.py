@@ -26,7 +26,7 @@ __version__ = "0.1.0"
 
 
 def load(spec: str | Path) -> Scene:
-    """Load a scene from a glTF, OBJ, PLY, STL or OFF file or a "demo:NAME"; ModelError says in one line why it cannot."""
+    """Load a glTF, OBJ, PLY, STL or OFF file or a "demo:NAME"; ModelError says in one line why it cannot."""
     from dofview.scene.load import load as load_scene
 
     return load_scene(spec)
