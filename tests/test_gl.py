@@ -6,7 +6,6 @@ from enum import StrEnum
 
 import numpy as np
 import pytest
-from gl_objects import live_objects
 from pydantic import BaseModel, ConfigDict
 
 from dofview.errors import ShaderError
@@ -17,6 +16,7 @@ from dofview.gl.shaders import flatten
 from dofview.gl.uniforms import block_bytes, block_glsl
 from dofview.lens import Lens
 from dofview.render.frame import LensBlock
+from dofview.stress.living import live_objects
 
 
 class Mode(StrEnum):

@@ -7,7 +7,6 @@ from enum import Enum
 
 import numpy as np
 import pytest
-from gl_objects import live_objects
 from scenes import constant, empty, noise_material, quad, scene_of, three_planes, unlit
 
 from dofview.gl.context import MOST_BLOCKS, Gpu
@@ -18,6 +17,7 @@ from dofview.metrics import psnr
 from dofview.pipeline import Pipeline
 from dofview.scene.camera import Camera
 from dofview.settings import ImageSettings, Settings
+from dofview.stress.living import live_objects
 
 BLURRING = [name for name in METHODS if name != "pinhole"]
 SIZE = (96, 72)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from itertools import islice
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from dofview.errors import SettingsError
 from dofview.gl.context import Gpu
 from dofview.methods import METHODS
-from dofview.stress import shapes
+from dofview.stress import long, shapes
 from dofview.stress.bench import Bench
 from dofview.stress.row import Measured, Row, Skipped, bounds
 from dofview.stress.run import ROWS, cases, chosen_rows, stress
@@ -73,3 +74,24 @@ def test_the_cheap_rows_hold_for_every_method(gpu: Gpu, number: int):
 def test_an_unknown_row_is_refused():
     with pytest.raises(SettingsError, match="no row 99; accepted: 1, 2"):
         chosen_rows(99)
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="counted through /proc")
+@pytest.mark.parametrize("name", [name for name in long.NAMES if name != "resize"])
+def test_nothing_is_left_over_after_a_few_cycles(gpu: Gpu, monkeypatch, name: str):
+    """Five hundred cycles and memory are for `dofview stress --long`; a hundred resizes are in test_methods."""
+    monkeypatch.setattr(long, "WARM_UP", 8)
+    with long.opened(gpu) as run:
+        found = long.repeat(run, name, 12)
+    assert (found.objects, found.files, found.threads, found.children) == (0, 0, 0, 0)
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="counted through /proc")
+def test_what_is_left_over_is_seen(gpu: Gpu, monkeypatch):
+    monkeypatch.setattr(long, "WARM_UP", 1)
+    kept = []
+    with long.opened(gpu) as run:
+        monkeypatch.setattr(run, "switch", lambda: kept.append(gpu.ctx.buffer(reserve=16)))
+        assert long.repeat(run, "switch", 5).objects >= 5
+    for buffer in kept:
+        buffer.release()

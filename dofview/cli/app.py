@@ -155,7 +155,8 @@ def doctor(*, json: Json = False) -> None:
 
 def stress(
     *, minutes: float | None = None, row: int | None = None, method: MethodName = None, seed: int = 1,
-    size: int = 128, views: int = 256, rounds: int = 1,
+    size: int = 128, views: int = 256, rounds: int = 1, long: Annotated[bool, Parameter(negative="")] = False,
+    cycles: int = 500, what: str | None = None,
 ) -> None:  # fmt: skip
     """Try every method under random and cornered settings and judge the pictures by invariants with stated bounds.
 
@@ -167,9 +168,17 @@ def stress(
         Only this invariant, by its number.
     seed
         The first seed; each round takes the next.
+    long
+        Instead, do the same thing again and again, and count what is left over.
+    cycles
+        How often, with --long.
+    what
+        With --long, only this: resize, switch, reload, reload a broken file, record, screenshot.
     """
-    from dofview.cli.stressing import run_stress
+    from dofview.cli.stressing import run_long, run_stress
 
+    if long:
+        sys.exit(run_long(cycles, what, seed))
     sys.exit(run_stress(minutes, row, method, seed, size, views, rounds))
 
 

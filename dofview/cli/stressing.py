@@ -11,6 +11,7 @@ from dofview.errors import SettingsError
 from dofview.gl.context import create_headless
 from dofview.methods import METHODS
 from dofview.methods import method as method_named
+from dofview.stress import long
 from dofview.stress.row import Failure, Row
 from dofview.stress.run import Report, chosen_rows, stress
 
@@ -42,6 +43,31 @@ def run_stress(
         print(f"row {number} left out: {reason}")
     print(f"{report.cases} cases, {len(report.failures)} failures")
     return 1 if report.failures else 0
+
+
+def run_long(cycles: int, what: str | None, seed: int) -> int:
+    """Repeat everything, or `what` alone, `cycles` times; exit status 1 when something is left over."""
+    if not 1 <= cycles <= 1_000_000:
+        raise SettingsError(f"cycles is {cycles}; accepted: a whole number from 1 to 1000000")
+    if what is not None and what not in long.NAMES:
+        raise SettingsError(f"nothing called {what[:40]!r}; accepted: {', '.join(long.NAMES)}")
+    table = Table("what", "cycles", "GL objects", "kB a cycle", "files", "threads", "children", "")
+    failed = 0
+    gpu = create_headless()
+    try:
+        with long.opened(gpu, seed) as run:
+            for name in long.NAMES if what is None else (what,):
+                found = long.repeat(run, name, cycles)
+                print(found, file=sys.stderr, flush=True)
+                failed += not found.held
+                table.add_row(name, str(cycles), f"{found.objects:+d}", f"{found.kb_per_cycle:.2f}",
+                              f"{found.files:+d}", f"{found.threads:+d}", str(found.children),
+                              "" if found.held else "left over")  # fmt: skip
+    finally:
+        gpu.release()
+        gpu.ctx.release()
+    Console().print(table)
+    return 1 if failed else 0
 
 
 def _tell(row: Row, method: str, seed: int, found: list[Failure]) -> None:
