@@ -75,5 +75,8 @@ def alive(ctx: moderngl.Context) -> Alive:
 
 
 def memory_kb() -> float:
-    """Resident memory of this process, kB; Linux only."""
+    """Resident memory of this process, kB, without what the C library keeps for later; Linux only."""
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:
+        trim(0)
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1024.0
