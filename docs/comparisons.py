@@ -25,6 +25,7 @@ COMPARED = {
     "mipmap": ("demo:background", "gaussian", (320, 240)),
     "multiview": ("demo:foreground", "uniform_disc", (272, 204)),
     "pyramid": ("demo:foreground", "gaussian", (272, 204)),
+    "splatting": ("demo:foreground", "uniform_disc", (272, 204)),
 }
 RADII = (0.1, 0.3, 1.0, 3.0)
 RADII_SCENE, RADII_SIZE = "demo:rail", (180, 135)
