@@ -2,7 +2,8 @@
 // y among the hidden ones, z among the second ones; -1 where they need not look at all.
 //
 // In a tile in focus every pixel is opaque by itself, so only what is in front can show, or what is so little behind the
-// focus that it shares the pixel's layer; where nothing is, the tile is copied. The map has the tiles of one level after the other, from the bottom.
+// focus that it shares the pixel's layer; where nothing is, the tile is copied. The map has the tiles of one level after
+// the other, from the bottom.
 #include "methods/splatting/point.glsl"
 #include "methods/splatting/sprite.glsl"
 
@@ -40,7 +41,8 @@ void main()
             vec2 apart = max(abs(vec2(x, y) - vec2(tile)) * float(TILE) - float(TILE - 1), vec2(0.0));
             float distance = length(apart) - rim;
             vec4 there = texelFetch(largest, ivec2(x, y + row), 0);
-            vec3 radius = vec3(max(there.x, sharp ? min(there.y, MOST_SHARED) : there.y), sharp ? -1.0 : there.z, there.w);
+            if (sharp) there.yz = vec2(min(there.y, MOST_SHARED), -1.0);
+            vec3 radius = vec3(max(there.x, there.y), there.z, there.w);
             bvec3 reaches = greaterThan(radius * max(extent, 1.0), vec3(max(distance, -0.5)));
             reach.xyz = max(reach.xyz, mix(vec3(-1.0), radius, reaches));
         }
