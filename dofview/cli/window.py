@@ -20,7 +20,8 @@ def open_window(
 ) -> None:  # fmt: skip
     """Open the viewer on a scene; GLError where there is no screen to open it on.
 
-    It is shown as it was last seen, unless something was asked for that would be lost by that.
+    It is shown as it was last seen, unless something was asked for that would be lost by that. A size that was asked
+    for is the window's.
     """
     if screen() is None:
         raise GLError(
@@ -35,8 +36,9 @@ def open_window(
     from dofview import viewer
 
     try:
+        size = settings.image.size if "size" in given.get("image", {}) else None
         asked = view is not None or camera is not None or bool(given.keys() & {"lens", "photo", "light"})
-        viewer.run(scene, settings, spec, restore=not asked, safe=safe)
+        viewer.run(scene, settings, spec, restore=not asked, safe=safe, size=size)
     except ModuleNotFoundError:
         raise
     except ImportError as error:

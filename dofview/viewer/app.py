@@ -214,6 +214,7 @@ class App:
         self.gpu.profile.timing = False
         self.gpu.ctx.finish()
         self.milliseconds = [*self.milliseconds[-119:], (time.perf_counter() - start) * 1e3]
+        log.info("rendered %s in %.1f ms", self.settings.method, self.milliseconds[-1])
         self.passes = self.gpu.profile.resolve() if self.timing else {}
         self.scene_renders += 1
         self._rendered = self.picture_key

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from dofview.viewer.app import App
 
 MESSAGE_S = 8.0
-LONGEST_EM = 60.0
+LONGEST_EM, LEGEND_EM = 60.0, 24.0
 BAR_EM = 14.0
 FLOATING = (
     imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_saved_settings
@@ -83,11 +83,12 @@ def _row(work: Work, number: int, width: float) -> None:
 
 
 def _write(message: str, foot: Rect) -> None:
-    """At the foot, in the middle, in as many lines as it needs."""
+    """At the foot, to the right of where legends are, in as many lines as it needs."""
     size, draw_list = imgui.get_font_size(), imgui.get_window_draw_list()
-    widest = max(min(LONGEST_EM * size, foot.width - 2.0 * size), 4.0 * size)
+    room = foot.width - (LEGEND_EM if foot.width > 2.0 * LEGEND_EM * size else 2.0) * size
+    widest = max(min(LONGEST_EM * size, room), 4.0 * size)
     extent = imgui.calc_text_size(message, False, widest)
-    left = foot.left + 0.5 * (foot.width - extent.x)
+    left = foot.left + foot.width - 1.4 * size - extent.x
     top = foot.top + foot.height - 2.0 * size - extent.y
     draw_list.add_rect_filled(
         (left - 0.6 * size, top - 0.4 * size), (left + extent.x + 0.6 * size, top + extent.y + 0.4 * size),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
@@ -22,6 +23,7 @@ from dofview.viewer.tool import Rect, Tool, Work
 if TYPE_CHECKING:
     from dofview.viewer.app import App
 
+log = logging.getLogger("dofview.viewer")
 KINDS = (".mp4", ".webm", ".gif", "/%05d.png", "/%05d.exr")
 KIND_WORDS = ("MP4", "WebM", "GIF", "PNG pictures", "EXR pictures, linear light")
 SEEN, TURNTABLE, RACK, KEYFRAMES, GAZE = range(5)
@@ -186,6 +188,8 @@ class Output(Tool):
         elif app.result is not None:
             self._encoder.add(app.result.pixels() if self._linear else app.pipeline.shown(app.result, app.settings))
             self._frames += 1
+            if self._frames % self.fps == 0:
+                log.info("film: %d s", self._frames // self.fps)
 
     def _finish(self, app: App) -> None:
         assert self._encoder is not None

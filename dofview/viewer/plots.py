@@ -89,20 +89,21 @@ class Plots(Tool):
             return
         _setup_history(len(self.history))
         implot.setup_legend(implot.Location_.east, implot.LegendFlags_.outside)
-        count = len(self.history)
+        # One rendering alone is drawn as two: an area needs a width.
+        history = [self.history[0], *self.history] if len(self.history) == 1 else list(self.history)
+        count = len(history)
         base = np.zeros(count)
         number = np.arange(count, dtype=float) - count + 1.0
-        for name in dict.fromkeys(name for frame in self.history for name in frame):
-            top = base + np.array([frame.get(name, 0.0) for frame in self.history])
-            if count > 1:
-                implot.plot_shaded(f"{name}##pass", number, base, top)
-            else:
-                implot.plot_bars(f"{name}##pass", np.array([0.0]), top - base, 0.5)
+        for name in dict.fromkeys(name for frame in history for name in frame):
+            top = base + np.array([frame.get(name, 0.0) for frame in history])
+            implot.plot_shaded(f"{name}##pass", number, base, top)
             base = top
         implot.end_plot()
 
     def _frames(self, app: App) -> None:
         """Milliseconds of whole renderings."""
+        if len(app.milliseconds) < 2:
+            return
         if not implot.begin_plot("Frames, ms##frames", _size(0.7), QUIET | implot.Flags_.no_legend):
             return
         _setup_history(len(app.milliseconds))
@@ -134,7 +135,7 @@ class Plots(Tool):
         imgui.text_disabled(Measurement(0.0, survey.points[0].quality).reference_text())
         if outdated:
             imgui.text_disabled("of another view")
-        if implot.begin_plot("Error against time##errors", _size(1.2), QUIET):
+        if implot.begin_plot("Error against time##errors", _size(1.4), QUIET | implot.Flags_.no_legend):
             _scatter(finite, survey.points, outdated)
             implot.end_plot()
 
@@ -162,14 +163,14 @@ def _setup_history(count: int) -> None:
 
 
 def _scatter(finite: list[Point], points: list[Point], outdated: bool) -> None:
+    size = imgui.get_font_size()
     implot.setup_axes("ms", "PSNR, dB")
     implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
     if finite:
         # A logarithmic axis does not fit itself to its points in the first frame, after which the window may rest.
         times, decibels = [point.ms for point in finite], [point.psnr for point in finite]
-        limits = min(times) / 2.0, max(times) * 2.0, min(decibels) - 3.0, max(decibels) + 3.0
+        limits = min(times) / 2.0, max(times) * 2.0, min(decibels) - 4.0, max(decibels) + 4.0
         implot.setup_axes_limits(*limits, implot.Cond_.always)
-    implot.setup_legend(implot.Location_.east, implot.LegendFlags_.outside)
     best = [record for record in front(point.record() for point in points) if record["psnr"] is not None]
     if best:
         line = implot.Spec()
@@ -182,3 +183,6 @@ def _scatter(finite: list[Point], points: list[Point], outdated: bool) -> None:
         if outdated or not point.trustworthy:
             look.marker_fill_color = look.marker_line_color = imgui.ImVec4(0.5, 0.5, 0.5, 1.0)
         implot.plot_scatter(point.method, np.array([point.ms]), np.array([point.psnr]), look)
+    for number, point in enumerate(sorted(finite, key=lambda point: point.ms)):
+        # Names above and below in turn: points often stand close together.
+        implot.plot_text(point.method, point.ms, point.psnr, (0.0, (1.0 if number % 2 else -1.0) * size))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -134,7 +135,8 @@ class Shots(Tool):
 
 
 def save_window(app: App) -> None:
-    """Save the whole window under a new name once this frame is drawn."""
+    """Save the whole window under a new name once this frame is drawn, without the message of the last picture."""
+    app.said_at = -math.inf
     app.when_drawn = partial(_save_drawn, app, note(app.spec, app.settings))
 
 

@@ -129,6 +129,8 @@ class Survey(Tool):
         self._left, self._times = self._left[1:], []
         if not self._left:
             self.points, self.of, self._found = self._found, self._key, []
+            best = ", ".join(f"{point.method} {point.ms:.1f} ms {point.psnr:.1f} dB" for point in self.points)
+            app.report(f"measured all: {best}")
 
 
 def view(app: App) -> object:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
@@ -20,6 +21,7 @@ from dofview.viewer.tool import Tool, Work
 if TYPE_CHECKING:
     from dofview.viewer.app import App
 
+log = logging.getLogger("dofview.viewer")
 REFERENCE = "accumulation"
 NO_VIEWS = Quality(0, 0.0)
 
@@ -65,6 +67,8 @@ class Truth(Tool):
             reference = app.pipeline.reference(self.settings(app), antialias=self.antialiased(app))
             add_views(app, reference)
             self.quality = reference.quality()
+            if self.done(app):
+                log.info(Measurement(0.0, self.quality).reference_text())
         self._asked = frame
         return self.quality
 

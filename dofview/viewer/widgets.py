@@ -39,12 +39,12 @@ def edit(model: M, *, only: tuple[str, ...] = (), ranges: Mapping[str, tuple[flo
     return model.model_validate({**model.model_dump(), **changes}) if changes else model
 
 
-UNITS = {"deg": "°", "px": "px", "mm": "mm", "ev": "EV", "s": "s", "hz": "Hz", "m": "m"}
+UNITS = {"deg": "°", "px": "px", "mm": "mm", "ev": "EV", "ms": "ms", "s": "s", "hz": "Hz", "m": "m"}
 """What the last word of a name says of its unit."""
 
 WORDS = {
     "radius": "lens radius", "distribution": "shape of the lens", "vfov_deg": "angle of view", "tonemap": "tone curve",
-    "scale": "render scale",
+    "dots_per_mm": "dots a millimetre", "unit_m": "scene unit", "blur_px": "largest blur", "dwell_s": "dwell time",
 }  # fmt: skip
 """Names that say more where they stand alone."""
 
@@ -61,7 +61,7 @@ def unit(name: str, info: FieldInfo) -> str:
     """The unit that is written after a value; empty where there is none or it needs more words."""
     head, _, last = name.rpartition("_")
     found = fields.extra(info, "unit") or (UNITS.get(last, "") if head else "")
-    return found if len(found) <= 3 else ""
+    return found if len(found) <= 3 and "_per_" not in name else ""
 
 
 def plain(text: str) -> str:

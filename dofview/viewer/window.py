@@ -40,13 +40,13 @@ a key pressed and released at once over several frames."""
 
 def run(
     scene: Scene, settings: Settings, spec: str = "", *, restore: bool = False, store: Store | None = None,
-    size: tuple[int, int] = SIZE,
+    size: tuple[int, int] | None = None,
 ) -> None:  # fmt: skip
     """Open a window on `scene`, which was loaded from `spec`, and return when it is closed.
 
     With `restore` the scene is shown as it was last seen, if it was.
     """
-    window = _create(size, f"dofview — {spec}" if spec else "dofview")
+    window = _create(size or SIZE, f"dofview — {spec}" if spec else "dofview")
     handle = window._window
     gpu = Gpu(window.ctx)
     _create_interface(handle)
