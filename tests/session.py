@@ -47,8 +47,9 @@ class Session:
         self.compare()
         self.error_map()
         self.measure_all()
-        film = self.record()
-        self.reopen(film)
+        self.record()
+        self.reopen()
+        self.without_panels()
 
     def picture(self) -> tuple[np.ndarray, Remembered, Path]:
         """The picture as it is saved, (h, w, 3), what it says of itself, and its path."""
@@ -162,7 +163,7 @@ class Session:
         self.keep("plots", window.seen())
         window.after(lambda: window.key("t"), "action: Plots")
 
-    def record(self) -> Path:
+    def record(self) -> None:
         """Two seconds, with another focus and another method on the way."""
         window = self.window
         window.after(lambda: window.key("ctrl+m"), "action: Record", again_s=60.0)
@@ -177,9 +178,8 @@ class Session:
         assert len(frames) == count >= 60
         width, height = self.settings.image.size
         assert psnr(frames[0][:height, :width], self.headless()) > 35.0, "it begins with what was seen"
-        return film
 
-    def reopen(self, film: Path) -> None:
+    def reopen(self) -> None:
         """The settings and pixels of a picture come back after everything was changed."""
         window = self.window
         before, note, path = self.picture()
@@ -192,6 +192,20 @@ class Session:
         window.after(lambda: window.type_path(str(path)), "settings: .*method splatting", again_s=30.0)
         again, restored, _ = self.picture()
         assert restored == note and np.abs(again - before).max() <= 1.0
+
+    def without_panels(self) -> None:
+        """A slider is dragged, then the panels make room for the picture."""
+        window, width = self.window, self.settings.image.size[0]
+        left, right = ((width + x) / window.size[0] for x in (30.0, 120.0))
+        y = 63.0 / window.size[1]
+        window.after(lambda: window.drag((left, y), (right, y)), FOCUS)
+        window.after(lambda: window.key("h"), "action: Interface", again_s=60.0)
+        for _ in range(10):
+            # The place of the menus is given up a frame later.
+            _, note, _ = self.picture()
+            if note.settings.image.size == window.size:
+                return
+        raise AssertionError(f"the picture does not fill the window: {note.settings.image.size}")
 
 
 FOCUS = r"settings: .*lens\.focus_distance ([\d.e+-]+)"

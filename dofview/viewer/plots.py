@@ -10,6 +10,7 @@ import numpy as np
 from imgui_bundle import imgui, implot
 
 from dofview.bench.pareto import front
+from dofview.methods import METHODS
 from dofview.pipeline import Result
 from dofview.viewer.actions import Action
 from dofview.viewer.measurement import Measurement
@@ -180,8 +181,9 @@ def _scatter(finite: list[Point], points: list[Point], outdated: bool) -> None:
     for point in finite:
         look = implot.Spec()
         look.marker, look.marker_size = implot.Marker_.circle, 6.0
-        if outdated or not point.trustworthy:
-            look.marker_fill_color = look.marker_line_color = imgui.ImVec4(0.5, 0.5, 0.5, 1.0)
+        grey = outdated or not point.trustworthy
+        colour = imgui.ImVec4(0.5, 0.5, 0.5, 1.0) if grey else implot.get_colormap_color(METHODS.index(point.method))
+        look.marker_fill_color = look.marker_line_color = colour
         implot.plot_scatter(point.method, np.array([point.ms]), np.array([point.psnr]), look)
     for number, point in enumerate(sorted(finite, key=lambda point: point.ms)):
         # Names above and below in turn: points often stand close together.

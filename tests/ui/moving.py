@@ -115,7 +115,7 @@ def cameras_of_the_file(context: Context, app: App) -> None:
     context.yield_(2)
     assert app.settings.camera.vfov_deg == 30.0
     context.item_click("**/back##view")
-    context.item_input_value("**/vfov deg##vfov_deg", 60.0)
+    context.item_input_value("**/angle of view##vfov_deg", 60.0)
     context.yield_(2)
     assert app.settings.camera.vfov_deg == 60.0 and np.allclose(app.settings.camera.axes()[2], (0, 0, -1), atol=1e-6)
     context.item_close("**/Camera")
