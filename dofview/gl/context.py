@@ -68,7 +68,18 @@ def create_headless() -> Gpu:
     try:
         ctx = moderngl.create_context(standalone=True, require=REQUIRED, **settings)
     except Exception as error:
-        reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+        reason = _older(settings) or str(error).strip().partition("\n")[0] or type(error).__name__
         need = f"{REQUIRED // 100}.{REQUIRED % 100 // 10}"
         raise GLError(f"no usable OpenGL {need} without a screen ({reason}); {REMEDY}") from error
     return Gpu(ctx)
+
+
+def _older(settings: dict[str, Any]) -> str:
+    """What there is where what is needed is not; empty when there is nothing."""
+    try:
+        ctx = moderngl.create_context(standalone=True, require=210, **settings)
+        found = f"this machine offers {ctx.version_code // 100}.{ctx.version_code % 100 // 10}"
+        ctx.release()
+        return found
+    except Exception:
+        return ""

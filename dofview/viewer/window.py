@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import threading
 import time
@@ -85,12 +86,11 @@ def _create(size: tuple[int, int], title: str) -> Window:
         raise GLError("cannot open a window: no display; use `dofview render` where there is no screen")
     version = (4, 1)
     for version in ((4, 1), (REQUIRED // 100, REQUIRED % 100 // 10)):
-        try:
+        with contextlib.suppress(ValueError), warnings.catch_warnings():
+            warnings.simplefilter("ignore", glfw.GLFWError)
             return Window(
                 title=title, size=size, gl_version=version, vsync=True, resizable=True, samples=0, exit_key=None,
             )  # fmt: skip
-        except ValueError:
-            continue
     raise GLError(f"cannot open a window with OpenGL {version[0]}.{version[1]} core; {REMEDY}")
 
 
