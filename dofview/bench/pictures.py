@@ -39,7 +39,7 @@ def side_by_side(path: Path, pixels: np.ndarray, truth: np.ndarray) -> None:
     write_whole(path, lambda part: whole.save(part, format="JPEG", quality=88))
 
 
-def sheet(path: Path, rows: list[tuple[Path, str]], columns: int = 3) -> None:
+def sheet(path: Path, rows: list[tuple[Path, str]], columns: int = 4) -> None:
     """Write `path`, a JPEG of a scene: the truth, then each of `rows`' pictures above its heat map, with its words."""
     thirds = [_thirds(source) for source, _ in rows]
     width, height = thirds[0][0].size

@@ -21,7 +21,13 @@ light between the two pictures, over all pixels and channels.
 * **Kept images.** Pinhole picture, peels and layers depend on scene, camera and size, not on the lens or the method.
 * **Hidden objects.** The reference asks once which pieces lie outside the union of all its frusta, not for each view.
 * **Layers without surfaces** of the layered method cost nothing by themselves, as no tile has anything of them. What is
-  left out is their small filters, whose blur goes to the next one's: a sum of Gaussians is a Gaussian up to sampling.
+  left out are their small filters, whose blur goes to the next one's. A sum of Gaussians is a Gaussian up to sampling:
+  where filters are well below a pixel wide, as with 24 layers over a blur of 2 px, pictures differ by up to 0.02. That
+  is the one rule here that is not equal, and it is not switched by `--no-skip`.
+* **A converged reference** is not equal either: it is as near to the truth as it vouches for.
+* No rule costs more than it saves: where one finds nothing to leave out, the two times are within the 2 % that timing
+  is worth here. A test of boxes, masks or ranges is made once for a frame; the histogram and the content of cells are made
+  once for a camera and kept.
 """
 
 
