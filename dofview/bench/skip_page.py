@@ -26,8 +26,8 @@ light between the two pictures, over all pixels and channels.
   is the one rule here that is not equal, and it is not switched by `--no-skip`.
 * **A converged reference** is not equal either: it is as near to the truth as it vouches for.
 * No rule costs more than it saves: where one finds nothing to leave out, the two times are within the 2 % that timing
-  is worth here. A test of boxes, masks or ranges is made once for a frame; the histogram and the content of cells are made
-  once for a camera and kept.
+  is worth here. A test of boxes, masks or ranges is made once for a frame; the histogram and the content of cells are
+  made once for a camera and kept.
 """
 
 
