@@ -134,7 +134,9 @@ class Bench:
 def errors(pixels: np.ndarray, truth: Truth) -> dict[str, object]:
     """PSNR, SSIM, FLIP, and PSNR where the picture is sharp, blurred in front of and behind the focus."""
     zones = metrics.blur_zones(truth.coc)
-    found = {"psnr": _finite(metrics.psnr(pixels, truth.pixels)), "ssim": round(metrics.ssim(pixels, truth.pixels), 5)}
+    found: dict[str, object] = {
+        "psnr": _finite(metrics.psnr(pixels, truth.pixels)), "ssim": round(metrics.ssim(pixels, truth.pixels), 5)
+    }  # fmt: skip
     try:
         found["flip"] = round(metrics.flip(pixels, truth.pixels), 5)
     except InputError:

@@ -44,7 +44,7 @@ def sheet(path: Path, rows: list[tuple[Path, str]], columns: int = 4) -> None:
     thirds = [_thirds(source) for source, _ in rows]
     width, height = thirds[0][0].size
     band = 16
-    cells = [(thirds[0][0], None, "reference")]
+    cells: list[tuple[Image.Image, Image.Image | None, str]] = [(thirds[0][0], None, "reference")]
     cells += [(tiles[1], tiles[2], words) for tiles, (_, words) in zip(thirds, rows, strict=True)]
     lines = -(-len(cells) // columns)
     whole = Image.new("RGB", (columns * width, lines * (2 * height + band)), "white")

@@ -11,6 +11,7 @@ import statistics
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -78,7 +79,7 @@ class Skip:
     when: str
     counter: str
     see: See = as_it_is
-    parameters: dict[str, object] = field(default_factory=dict)
+    parameters: dict[str, Any] = field(default_factory=dict)
     scenes: tuple[str, ...] = SCENES
 
 
@@ -153,7 +154,8 @@ def _measured(bench: Bench) -> Iterator[dict]:
 
 def _switched(bench: Bench, pipeline: Pipeline, settings: Settings, skip: Skip) -> dict[str, object]:
     """Frames in turn with the work left out and done: milliseconds of both, and how far the pictures differ."""
-    profile, pictures, times = bench.gpu.profile, {}, {True: [], False: []}
+    profile, pictures = bench.gpu.profile, {}
+    times: dict[bool, list[float]] = {True: [], False: []}
     for left_out in (True, False) * FRAMES:
         profile.done_anyway = frozenset() if left_out else frozenset({skip.counter})
         pipeline.scene.culling = left_out or skip.counter != "pieces culled"
@@ -179,7 +181,8 @@ def _count(pipeline: Pipeline, settings: Settings, counter: str) -> int:
 
 def _kept_images(bench: Bench, pipeline: Pipeline, settings: Settings, skip: Skip) -> dict[str, object]:
     """The focus moves to and fro: with the images of the frame before, and with nothing kept."""
-    pictures, times, passes = {}, {True: [], False: []}, {}
+    pictures, passes = {}, {}
+    times: dict[bool, list[float]] = {True: [], False: []}
     for kept in (True, False):
         for number in range(2 * FRAMES):
             moved = _focused(settings, settings.lens.focus_distance * (1.02 if number % 2 else 1.0))

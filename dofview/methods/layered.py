@@ -29,7 +29,7 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = True
-QUALITIES = (
+QUALITIES: tuple[dict[str, object], ...] = (
     {"step": 4.0, "peels": 1}, {"step": 2.0}, {}, {"step": 0.5, "peels": 3},
 )  # fmt: skip
 

@@ -26,7 +26,7 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = True
-QUALITIES = (
+QUALITIES: tuple[dict[str, object], ...] = (
     {"constants": "paper"}, {"anisotropic": False, "smooth_foreground": False}, {},
 )  # fmt: skip
 

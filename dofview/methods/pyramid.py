@@ -26,7 +26,7 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = True
-QUALITIES = (
+QUALITIES: tuple[dict[str, object], ...] = (
     {"analysis": "box2"}, {"analysis": "box4", "blur": "paper", "matting": "paper"}, {},
 )  # fmt: skip
 

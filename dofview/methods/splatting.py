@@ -26,7 +26,7 @@ CITATION = (
 )
 REQUIRES_GL = 330
 GUARD_BAND = True
-QUALITIES = (
+QUALITIES: tuple[dict[str, object], ...] = (
     {"hidden": False, "reduced_from": 3.0}, {"reduced_from": 3.0}, {}, {"reduced_from": 12.0},
 )  # fmt: skip
 
@@ -149,7 +149,7 @@ def _gather(recipe: Recipe, points: Points, picture: Image, params: Params) -> N
         _count_tiles(recipe, reach, points.levels)
     recipe.draw(
         "gather.frag", into, defines=flags, values={"merged_from": points.merged_from, **points.sprite.values},
-        viewport=(frame.guard, frame.guard, *frame.inner_size), clear=params.inspect, **textures,
+        viewport=(frame.guard, frame.guard, *frame.inner_size), clear=params.inspect, images=textures,
     )  # fmt: skip
 
 
@@ -169,7 +169,7 @@ def _scatter(recipe: Recipe, points: Points, picture: Image, params: Params) -> 
         textures |= {"hidden_layer_1": m1, "hidden_layer_2": m2}
         for level, image in enumerate(points.hidden):
             points.draw_sprites(recipe, image, level, (m1, m2), clear=level == 0)
-    recipe.draw("compose.frag", picture, defines=points.flags, **textures)
+    recipe.draw("compose.frag", picture, defines=points.flags, images=textures)
 
 
 def _has_front(coc_range: tuple[float, float], delta: float) -> bool:

@@ -6,7 +6,7 @@ Nothing for a disc, whose coverage is a formula, and a summed-area table for any
 from __future__ import annotations
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -44,12 +44,12 @@ def sprite_of(recipe: Recipe) -> Sprite:
     if key not in cache.values:
         aperture = of_lens(lens, TEXELS)
         cache.values[key] = (aperture, reach_of(aperture), spread_of(aperture))
-    aperture, extent, spread = cache.values[key]  # type: ignore[misc]
+    aperture, extent, spread = cast("tuple[Aperture, float, float]", cache.values[key])
     side = len(aperture.weights) + 1
     table = recipe.image("aperture", (side, side), components=1, linear=True)
     if not cache.holds(key, table):
         table.write(summed_area(aperture.weights)[..., None])
-    values = {"extent": extent, "spread": spread, "aperture_half_width": aperture.extent}
+    values: dict[str, object] = {"extent": extent, "spread": spread, "aperture_half_width": aperture.extent}
     return Sprite(key, extent, spread, {"APERTURE": 1}, values, {"aperture_sums": table})
 
 

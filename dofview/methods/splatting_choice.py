@@ -5,14 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dofview.gl.targets import Image
-from dofview.methods.method import Params, Recipe
+from dofview.methods.method import Recipe
 from dofview.methods.splatting_aperture import DISC
 from dofview.methods.splatting_points import EVERY, Points, constants
 from dofview.render.frame import Frame
+
+if TYPE_CHECKING:
+    from dofview.methods.splatting import Params
 
 SIDE, RADIUS = 128, 8.0
 """The trial: a square of points of one CoC, px."""
@@ -28,7 +32,7 @@ class Computation(StrEnum):
     SCATTER = "scatter"
 
 
-Way = Callable[[Recipe, Points, Image, Params], None]
+Way = Callable[[Recipe, Points, Image, "Params"], None]
 
 
 def faster(frame: Frame, ways: Mapping[Computation, Way], params: Params) -> Computation:

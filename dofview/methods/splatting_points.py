@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import moderngl
 import numpy as np
@@ -13,10 +14,13 @@ import numpy as np
 from dofview.gl.passes import ADD
 from dofview.gl.pyramids import level_size
 from dofview.gl.targets import Image
-from dofview.methods.method import Params, Recipe
+from dofview.methods.method import Recipe
 from dofview.methods.splatting_aperture import DISC, Sprite, sprite_of
 from dofview.render.frame import Surfaces
 from dofview.render.raster import depth_range, draw_scene
+
+if TYPE_CHECKING:
+    from dofview.methods.splatting import Params
 
 TILE = 8
 MOST_RADIUS = 256.0
@@ -70,7 +74,7 @@ class Points:
                 "canvas": layers[0].size, "level": level, "to": EVERY if last else self.upper(level),
                 "first_row": rows.start, **self.sprite.values,
             },
-            sprite_points=image, points=self.visible[0][0], **self.sprite.textures,
+            sprite_points=image, points=self.visible[0][0], images=self.sprite.textures,
         )  # fmt: skip
 
 
@@ -113,7 +117,7 @@ def make_points(recipe: Recipe, params: Params) -> Points:
     if levels and not by_paper:
         textures |= _brightness(recipe, surfaces.color)
     recipe.draw(
-        "points.frag", images, **textures,
+        "points.frag", images, images=textures,
         defines=flags | {"REDUCED_FROM": merged_from, **({"EXTRAPOLATE": 1} if params.extrapolate else {})},
         values=sprite.values | ({"background": frame.background} if hidden else {}),
     )  # fmt: skip
@@ -141,7 +145,9 @@ def _merge(recipe: Recipe, points: Points, levels: int, source: Image, merged_fr
             flags.pop("HIDDEN", None)
         elif points.hidden:
             textures["hidden_points"] = points.hidden[-1]
-        recipe.draw("reduce.frag", into, defines=flags, values={"from": merged_from * 2.0 ** (level - 1)}, **textures)
+        recipe.draw(
+            "reduce.frag", into, defines=flags, values={"from": merged_from * 2.0 ** (level - 1)}, images=textures
+        )
         points.visible.append((into[0], into[1]))
         if points.hidden:
             points.hidden.append(into[2])
@@ -163,7 +169,7 @@ def search_map(recipe: Recipe, points: Points, skip: bool) -> tuple[Image, Image
         recipe.draw(
             "tiles.frag", largest, viewport=(0, level * rows, tiles[0], rows),
             defines={**points.flags, "LEVEL": level, **({"SECOND": 1} if second is not None else {})},
-            values={"to": points.upper(level), "row": level * rows}, **textures,
+            values={"to": points.upper(level), "row": level * rows}, images=textures,
         )  # fmt: skip
     farthest = int(points.widest * points.sprite.extent) // TILE + 1
     recipe.draw(
@@ -203,7 +209,7 @@ def _k_n(recipe: Recipe, sprite: Sprite) -> Image:
     if not recipe.frame.cache.holds(sprite.key, table):
         recipe.draw(
             "k_n.frag", table, defines={"MOST_RADIUS": MOST_RADIUS, "K_N_STEPS": K_N_STEPS, **sprite.flags},
-            values=sprite.values, **sprite.textures,
+            values=sprite.values, images=sprite.textures,
         )  # fmt: skip
     return table
 

@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 
 from dofview.gl.context import Gpu
-from dofview.gl.passes import AnyTexture, Blocks, Textures, bind, block_texts
+from dofview.gl.passes import AnyTexture, Blocks, Color, Textures, bind, block_texts
 from dofview.gl.targets import Image
 from dofview.render.lights import Lights
 from dofview.render.upload import GpuScene
@@ -163,14 +163,14 @@ def _draw_all(
     gpu.profile.count("geometry passes")
 
 
-def _clear(gpu: Gpu, target: moderngl.Framebuffer, into: Sequence[Image], background: tuple[float, ...]) -> None:
+def _clear(gpu: Gpu, target: moderngl.Framebuffer, into: Sequence[Image], background: Color) -> None:
     """Begin a picture over `background`, RGBA, with nothing in it; `target` is left in use."""
     target.use()
     gpu.ctx.viewport = (0, 0, *into[0].size)
     # One clear gives all attachments the same colour, so the background follows on the colour image alone.
     target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
     if any(background):
-        gpu.targets.framebuffer(into[:1]).clear(*background)
+        gpu.targets.framebuffer(into[:1]).clear(color=background)
         target.use()
         gpu.ctx.viewport = (0, 0, *into[0].size)
 

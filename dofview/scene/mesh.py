@@ -30,7 +30,7 @@ def read(data: bytes, name: str, folder: Folder, suffix: str) -> Scene:
     if triangles.min() < 0 or triangles.max() >= len(positions):
         raise ModelError(f"has a face that names a vertex it has not; accepted: 0 to {len(positions) - 1}")
     folder.account.charge_draw(len(triangles))
-    finite = (np.abs(positions) <= LARGEST).all(axis=1)[triangles].all(axis=1)
+    finite = (np.abs(positions[triangles]) <= LARGEST).all(axis=(1, 2))
     notes.count("face", "faces", "with a corner that is not finite, left out", int((~finite).sum()))
     rows, triangles = used_rows(triangles[finite].astype(np.uint32))
     positions = positions[rows]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from dofview.gl.context import Gpu
@@ -28,7 +30,7 @@ class Bench:
 
     def settings(
         self, method: str, lens: Lens, camera: Camera = CAMERA, size: tuple[int, int] | None = None,
-        background: float = 0.0, views: int | None = None, **image: object,
+        background: float = 0.0, views: int | None = None, **image: Any,
     ) -> Settings:  # fmt: skip
         """Settings for a square picture of the bench's size; the reference gets `views`, or the bench's number."""
         settings = Settings(

@@ -83,8 +83,8 @@ def deep(bench: Bench, method: str, random: np.random.Generator) -> list[Measure
     cards = [shapes.facing(0.0, 0.0, -1e6, 1e6, 1e6, 0)]
     for place, depth in zip(turn, depths[:-1], strict=True):
         angle = 2.0 * np.pi * place / len(turn)
-        center = 0.22 * depth * np.array([np.cos(angle), np.sin(angle)])
-        cards.append(shapes.facing(*center, -depth, 0.08 * depth, 0.08 * depth, 1))
+        x, y = 0.22 * depth * np.cos(angle), 0.22 * depth * np.sin(angle)
+        cards.append(shapes.facing(x, y, -depth, 0.08 * depth, 0.08 * depth, 1))
     dark, light = shapes.unlit((0.25, 0.25, 0.25)), shapes.unlit((0.75, 0.75, 0.75))
     scene, grey = shapes.scene(cards, [dark, light]), shapes.scene(cards, [shapes.unlit((0.5, 0.5, 0.5))] * 2)
     camera = Camera(position=(0.0, 0.0, 0.0), target=(0.0, 0.0, -1.0), vfov_deg=CAMERA.vfov_deg)
@@ -155,7 +155,9 @@ def _choices(method: str, name: str, field, random: np.random.Generator) -> list
         high = MOST_VIEWS
     low, high = (low + 1e-3 * (high - low) if open_low else low), (high - 1e-3 * (high - low) if open_high else high)
     if plain is int:
-        return sorted({int(low), min(int(low) + 1, int(high)), int(random.integers(low, high + 1)), int(high)})
+        return sorted(
+            {int(low), min(int(low) + 1, int(high)), int(random.integers(int(low), int(high) + 1)), int(high)}
+        )
     return [float(low), float(random.uniform(low, high)), float(high)]
 
 
@@ -163,7 +165,8 @@ def scenes_at_the_ends(bench: Bench, method: str, random: np.random.Generator) -
     """An empty scene, a card that covers the lens, thousands of faces in one plane, triangles of no area, objects only
     behind the camera, a box that it stands in."""
     grey = shapes.unlit((0.5, 0.5, 0.5))
-    many = [shapes.facing(*random.uniform(-3, 3, 2), 0.0, *random.uniform(0.01, 0.5, 2)) for _ in range(3000)]
+    places, halves = random.uniform(-3, 3, (3000, 2)), random.uniform(0.01, 0.5, (3000, 2))
+    many = [shapes.facing(x, y, 0.0, w, h) for (x, y), (w, h) in zip(places, halves, strict=True)]
     flat = [shapes.card(np.array([x, 0.0, 0.0]), np.array([0.0, 1e-12, 0.0]), np.array([1e-12, 0.0, 0.0]))
             for x in (-0.5, 0.5)]  # fmt: skip
     covering = [shapes.facing(0, 0, 5.0 - 1e-3, 1.0, 1.0), shapes.facing(0, 0, -3.0, 9.0, 9.0)]

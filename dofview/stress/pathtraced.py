@@ -6,6 +6,8 @@ tested against it: at a level of 1 % over all pixels together (Šidák), a pictu
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from dofview.lens import Lens
@@ -88,7 +90,8 @@ def _traced(scene: Scene, lens: Lens, seed: int) -> np.ndarray:
                 "type": "rectangle", "to_world": mitsuba.ScalarTransform4f(matrix.tolist()), "emitter": light
             }  # fmt: skip
     loaded = mitsuba.load_dict(description)
-    return np.array([np.array(mitsuba.render(loaded, spp=SAMPLES, seed=seed + run)) for run in range(RUNS)])
+    seeds: Any = range(seed, seed + RUNS)  # typed as a number of Mitsuba's own, which a plain one becomes
+    return np.array([np.array(mitsuba.render(loaded, spp=SAMPLES, seed=each)) for each in seeds])
 
 
 def _both_sides(card: Primitive) -> list[np.ndarray]:

@@ -59,7 +59,7 @@ class App:
         self.actions: tuple[Action, ...] = (*ACTIONS, *(a for tool in self.tools for a in tool.actions()))
         self.gestures: tuple[Gesture, ...] = (*viewport.GESTURES, *(g for tool in self.tools for g in tool.gestures()))
         self.wake = wake
-        self.panels_shown = True
+        self.panels_shown: bool = True
         self.panels_focused = False
         self.asking_for_path = False
         self.quitting = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
@@ -50,7 +51,7 @@ def _panels(app: App) -> None:
     _panel("Picture", True, lambda: _edit(app, panels.picture_panel(app.settings)))
     for tool in app.tools:
         if tool.title:
-            _panel(tool.title, tool.opened, lambda tool=tool: tool.panel(app))
+            _panel(tool.title, tool.opened, partial(tool.panel, app))
     _panel("Scene", False, lambda: panels.scene_panel(app.scene))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
@@ -40,7 +41,7 @@ class Optics(Tool):
     def actions(self) -> tuple[Action, ...]:
         return (
             *(Action(f"Lens: {name}", 0, "", f"Focal length and aperture of this lens: {name}.",
-                     lambda app, lens=lens: self.apply(app, lens), "Lens") for name, lens in CAMERAS.items()),
+                     partial(self.apply, lens=lens), "Lens") for name, lens in CAMERAS.items()),
             Action("Lens: human eye", 0, "", "The eye before a screen of Lee 2009 (mipmap): pupil 4 mm, screen at 3 m.",
                    lambda app: self.apply(app, self.eye), "Lens"),
         )  # fmt: skip

@@ -171,8 +171,9 @@ class Output(Tool):
 
     def _add_planned(self, app: App, plan: Path_) -> None:
         assert self._encoder is not None
-        for image in filter(None, (app.shown, app.result and app.result.image)):
-            app.gpu.targets.touch(image)
+        for image in (app.shown, app.result.image if app.result else None):
+            if image is not None:
+                app.gpu.targets.touch(image)
         settings = plan(self._frames).with_(image=app.settings.image)
         result = app.pipeline.render(settings, "film")
         self._encoder.add(result.pixels() if self._linear else app.pipeline.shown(result, settings))

@@ -40,7 +40,8 @@ def apply(theme: Theme, scale: float) -> None:
     light = theme == Theme.LIGHT
     (imgui.style_colors_light if light else imgui.style_colors_dark)()
     for name, rgb in (LIGHT if light else DARK).items():
-        style.set_color_(getattr(imgui.Col_, name), (*(((rgb >> shift) & 255) / 255.0 for shift in (16, 8, 0)), 1.0))
+        red, green, blue = (((rgb >> shift) & 255) / 255.0 for shift in (16, 8, 0))
+        style.set_color_(getattr(imgui.Col_, name), (red, green, blue, 1.0))
 
 
 def vars_of(style: imgui.Style) -> dict[str, object]:

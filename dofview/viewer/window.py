@@ -12,6 +12,7 @@ import time
 import warnings
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 # isort: off
 import imgui_bundle
@@ -94,7 +95,7 @@ def _create(size: tuple[int, int], title: str) -> Window:
     raise GLError(f"cannot open a window with OpenGL {version[0]}.{version[1]} core; {REMEDY}")
 
 
-def _create_interface(handle: object) -> None:
+def _create_interface(handle: Any) -> None:
     imgui.create_context()
     io = imgui.get_io()
     io.config_flags |= imgui.ConfigFlags_.nav_enable_keyboard.value
