@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from scenes import quad, scene_of, three_planes, unlit
+from scenes import noise_material, quad, scene_of, three_planes, unlit
 
 from dofview import metrics
 from dofview.gl.context import Gpu
@@ -17,6 +17,7 @@ from dofview.methods.multiview_cones import average
 from dofview.methods.multiview_layers import Kind, Layering, Layers, build, fit
 from dofview.pipeline import Pipeline
 from dofview.render.frame import Frame
+from dofview.render.raster import depth_range
 from dofview.sampling import halton, on_lens
 from dofview.scene.camera import Camera
 from dofview.scene.demo import build as demo
@@ -110,6 +111,17 @@ def test_what_is_hidden_behind_all_gets_a_layer_of_its_own(gpu: Gpu):
     assert slabs.count == 9
     assert slabs.nearest - 8 * slabs.step == pytest.approx(farthest_seen)
     assert slabs.farthest < 1.0 / 100.0
+
+
+def test_layers_of_a_scene_that_surrounds_the_camera(gpu: Gpu):
+    """Its near plane may be ten decades in front of its far one; each layer has planes of its own."""
+    walls = [quad((0, 0, 0), (9, 9)), quad((0.3, 0, 2), (0.4, 1)), quad((0, -60, 40), (9, 9))]
+    pipeline = Pipeline(gpu, scene_of(walls, [noise_material(4)]))
+    settings = SETTINGS.with_params(skip=False)
+    assert depth_range(pipeline.scene, CAMERA)[0] < 1e-6
+    exact, passes = (pipeline.render(settings.with_params(layering=kind)).pixels() for kind in ("exact", "passes"))
+    pipeline.release()
+    assert metrics.psnr(exact, passes) > 60.0
 
 
 def test_finer_layers_hold_the_pixel_centres(planes: Pipeline):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -221,11 +222,14 @@ def _draw_once(recipe: Recipe, kind: Kind, images: dict[str, Image], defines: di
     defines = {
         **defines, "INVOCATIONS": -(-kind.slabs.count // most), "MOST_LAYERS": most, "MOST_VERTICES": 3 * most,
     }  # fmt: skip
-    near, _ = depth_range(recipe.frame.scene, recipe.frame.camera)
+    view, closest = _projection(recipe.frame, kind), 2.0 * kind.slabs.nearest
+    if "FARTHEST" not in defines:
+        # Each layer has a near and a far plane of its own, which need no logarithm of depth.
+        view = replace(view, near_far=(1.0, 1.0))
     draw_scene(
-        recipe.gpu, recipe.frame.scene, _projection(recipe.frame, kind), into, blocks={"Slabs": kind.slabs},
+        recipe.gpu, recipe.frame.scene, view, into, blocks={"Slabs": kind.slabs},
         framebuffer=recipe.gpu.targets.framebuffer(into, depth=True), geometry="methods/multiview/layers.geom",
-        values={"closest": 1.0 / near}, **_drawing(recipe, kind, defines),
+        values={"closest": closest}, **_drawing(recipe, kind, defines),
     )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ layout(triangle_strip, max_vertices = MOST_VERTICES) out;
 
 #include "methods/multiview/slabs.glsl"
 
-uniform float closest;  // greatest 1/z that is drawn
+uniform float closest;  // greatest 1/z that is drawn; what is nearest of all is in view, so it need not be much more
 
 in Vertex
 {
