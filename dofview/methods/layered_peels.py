@@ -85,14 +85,17 @@ class Peels:
         return {"anchors": layer.anchors, "background": self.background}
 
     def _pack(self, peels: Sequence[Surfaces]) -> dict[str, Image]:
-        """Inverse depths of four peels in each texel."""
-        names = ["depths_first", "depths_last"][: 1 + (len(peels) > 4)]
-        images = {name: self.recipe.image(name) for name in names}
+        """Inverse depths of four peels in each texel, and those of the first alone."""
+        images = {
+            "depths_first": self.recipe.image("depths_first"),
+            "depths_nearest": self.recipe.image("depths_nearest", components=1, linear=True),
+            **({"depths_last": self.recipe.image("depths_last")} if len(peels) > 4 else {}),
+        }
         key = (self.frame.geometry_key, len(peels))
         held = [self.frame.cache.holds(key, image) for image in images.values()]
         if not all(held):
             last = peels[-1].inverse_depth
-            sources = {f"depth{m}": peels[m].inverse_depth if m < len(peels) else last for m in range(4 * len(names))}
+            sources = {f"depth{m}": peels[m].inverse_depth if m < len(peels) else last for m in range(4 if len(peels) <= 4 else 8)}
             self.recipe.draw("depths.frag", list(images.values()), defines={"PEELS": len(peels)}, **sources)
         return images
 
@@ -117,6 +120,7 @@ class Peels:
             ]  # fmt: skip
             values = {"nearest": depths.nearest, "slices_per_depth": slices, "background_counts": background_counts}
             defines = {"CELL": CELL, "PEELS": self.defines["PEELS"]}
-            self.recipe.draw("content.frag", images, defines=defines, values=values, **self.depths)
+            depths_of_all = {name: image for name, image in self.depths.items() if name != "depths_nearest"}
+            self.recipe.draw("content.frag", images, defines=defines, values=values, **depths_of_all)
             self.frame.cache.values[key] = Content(depths.nearest, slices, *(image.pixels()[::-1] for image in images))
         return self.frame.cache.values[key]

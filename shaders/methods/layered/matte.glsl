@@ -42,6 +42,7 @@ uniform sampler2D color7;
 #endif
 uniform vec4 anchors;  // inverse depths z_(k-2), z_(k-1), z_k, z_(k+1) of layer k, falling
 #ifdef PRESENCE
+uniform sampler2D depths_nearest;  // of the first peel, fetched bilinearly: a reach that grows finds nothing all at once
 uniform float reach;  // px: how far the filter carries what is in this layer
 #endif
 uniform vec4 background;  // alpha 0: it cannot be seen, and what lies behind the last surface does not matter
@@ -143,13 +144,12 @@ float tail(float inverse_depth, float before)
 float presence(ivec2 pixel, float inverse_depth)
 {
     const vec2 around[4] = vec2[4](vec2(1.0, 0.0), vec2(0.7, 0.7), vec2(0.0, 1.0), vec2(-0.7, 0.7));
-    ivec2 last = textureSize(depths_first, 0) - 1;
+    vec2 texel = 1.0 / vec2(textureSize(depths_nearest, 0)), place = (vec2(pixel) + 0.5) * texel;
     float quarter = max(0.25 * (anchors.y - anchors.z), 1e-37), missing = 0.0;
     for (int i = 0; i < 4; ++i) {
-        ivec2 step = ivec2(round(reach * around[i]));
+        vec2 apart = reach * around[i] * texel;
         vec2 farther = (inverse_depth
-            - vec2(texelFetch(depths_first, clamp(pixel + step, ivec2(0), last), 0).r,
-                texelFetch(depths_first, clamp(pixel - step, ivec2(0), last), 0).r)) / quarter;
+            - vec2(texture(depths_nearest, place + apart).r, texture(depths_nearest, place - apart).r)) / quarter;
         vec2 alone = clamp(farther, 0.0, 1.0);
         float bend = abs(farther.x + farther.y);
         missing += min(farther.x, farther.y) < 0.0 ? min(alone.x + alone.y, bend) : alone.x + alone.y;
