@@ -33,13 +33,15 @@ class Layer:
     """One slice of depth.
 
     `radius` is its signed CoC radius and `sigma` its blur, px of the full image. `anchors` are the inverse depths
-    z_(k-2) … z_(k+1) of Schedl 2012 eq 3–4. Its blur is done at one texel for 2^`level` pixels.
+    z_(k-2) … z_(k+1) of Schedl 2012 eq 3–4. Its blur is done at one texel for 2^`level` pixels. `reach` is how far the
+    blur between it and the next layer towards the focus carries, px.
     """
 
     radius: float
     sigma: float
     anchors: Anchors
     level: int = 0
+    reach: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -107,10 +109,15 @@ def plan(law: CocLaw, near: list[float], far: list[float], *, sigma: float, betw
         # Without a ramp in front of the interval before it, a layer begins where that interval does.
         return line[k if between else k + 1], line[k + 1], line[k + 2], line[k + 3]
 
-    layers = [
-        Layer(radius, sigma * abs(radius), anchors(k), level(sigma * abs(radius))) for k, radius in enumerate(radii)
-    ]
+    def reach(k: int) -> float:
+        sharper = radii[k + 1 if k < focus else k - 1] if k != focus else 0.0
+        return sigma * math.sqrt(max(radii[k] ** 2 - sharper**2, 0.0))
+
     focus = len(near)
+    layers = [
+        Layer(radius, sigma * abs(radius), anchors(k), level(sigma * abs(radius)), reach(k))
+        for k, radius in enumerate(radii)
+    ]
     return Plan(tuple(layers[:focus]), layers[focus], tuple(reversed(layers[focus + 1 :])))
 
 

@@ -138,7 +138,7 @@ class Side:
             values["weights"] = np.array(weights, np.float32).tobytes()
         target = self._emptied(places.own) if added else into
         self.peels.draw(
-            "join.frag", target, layer, reach=step.sigma * 2**layer.level, defines=defines, values=values,
+            "join.frag", target, layer, reach=layer.reach * (step.sigma > 0.0), defines=defines, values=values,
             within=places.own, clear=not added and self._clear(into), **({"buffered": before} if before else {}),
         )  # fmt: skip
         if added:
