@@ -34,7 +34,7 @@ class ImageFrame(Frame):
     def pinhole(self) -> Surfaces:
         return self._surfaces_given
 
-    def depth_range(self) -> DepthRange:
+    def depth_range(self, picture: bool = True) -> DepthRange:
         least = float(self._inverse_depth.min())
         return DepthRange(float(self._inverse_depth.max()), least, False, least)
 

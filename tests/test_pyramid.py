@@ -154,9 +154,13 @@ def test_skipping_changes_nothing(gpu: Gpu, values: list[float]):
     gpu.profile.begin()
     slow = picture(gpu, color, coc, Params(skip=False))
     assert np.abs(quick - slow).max() <= 1e-5
-    assert counts["passes"] <= gpu.profile.counts["passes"]
+    assert counts.get("passes", 0) <= gpu.profile.counts["passes"]
+    if values == [0.0]:
+        # Nothing is blurred: the pinhole picture itself.
+        assert "pyramid sub-images" not in counts
+        return
     assert counts["pyramid fills skipped"] > 0
-    assert (counts["pyramid sub-images skipped"] > 0) == (values != [0.0])
+    assert counts["pyramid sub-images skipped"] > 0
 
 
 def test_occupied_depths_are_found(gpu: Gpu):
