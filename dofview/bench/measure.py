@@ -60,7 +60,8 @@ class Bench:
         record = {
             **asdict(case), "size": list(case.size), "parameters": dict(case.parameters), "ms": round(time.median, 3),
             "ms_lower": round(time.lower, 3), "ms_upper": round(time.upper, 3), "frames": len(milliseconds),
-            "clock": self.clock.name, "guard_px": guard, "triangles": pipeline.scene.scene.triangle_count,
+            "clock": self.clock.name, "lens_radius": settings.lens.radius,
+            "guard_px": guard, "triangles": pipeline.scene.scene.triangle_count,
         }  # fmt: skip
         record["counts"], record["passes_ms"] = counts, {}
         if is_default(record):

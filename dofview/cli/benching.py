@@ -67,9 +67,11 @@ def run_pick(
     with tempfile.TemporaryDirectory() as folder:
         store = bench([sweep], out or Path(folder))
         chosen = pick([r for r in store.records if r["scene"] == scene], budget_ms=budget_ms, min_psnr=min_psnr)
-    flags = " ".join(f"--{name.replace('_', '-')} {value}" for name, value in chosen["parameters"].items())
+    lens = {"radius": f"{chosen['lens_radius']:.6g}"} if "lens_radius" in chosen else {}
+    given = {"method": chosen["method"], **lens, **chosen["parameters"]}
+    flags = " ".join(f"--{name.replace('_', '-')} {value}" for name, value in given.items())
     print(f"{chosen['ms']:.1f} ms, {quality(chosen):.1f} dB against its {chosen['distribution']} reference")
-    print(f"dofview {scene} --method {chosen['method']} {flags}".rstrip())
+    print(f"dofview {scene} {flags}")
 
 
 def _changes(
