@@ -6,6 +6,7 @@ import math
 import os
 import platform
 from dataclasses import asdict, dataclass
+from datetime import date
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -153,7 +154,8 @@ def machine(gpu: Gpu) -> dict[str, str]:
         "renderer": gpu.renderer, "gl": gpu.ctx.info["GL_VERSION"], "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}", "processor": _processor(),
         "cores": str(os.cpu_count()), "threads": os.environ.get("LP_NUM_THREADS", "") if gpu.software else "",
-        "moderngl": _version("moderngl"), "numpy": np.__version__, "dofview": dofview.__version__,
+        "date": date.today().isoformat(), "moderngl": _version("moderngl"), "numpy": np.__version__,
+        "dofview": dofview.__version__,
     }  # fmt: skip
 
 

@@ -7,7 +7,6 @@ import html
 import re
 from collections import Counter
 from collections.abc import Iterator
-from datetime import date
 from pathlib import Path
 
 from dofview.bench import plots, tables
@@ -75,8 +74,10 @@ def _head(records: list[dict]) -> str:
         "percent whatever else the machine does. With a thread for every core, pixels would take less time on the "
         "wall, geometry would not.",
     }  # fmt: skip
+    dates = sorted({r["date"] for r in records})
+    days = " to ".join(dict.fromkeys((dates[0], dates[-1])))
     return (
-        f"{date.today().isoformat()}, dofview {records[0]['dofview']}, {len(records)} cases on {'; '.join(machines)}. "
+        f"{days}, dofview {records[0]['dofview']}, {len(records)} cases on {'; '.join(machines)}. "
         f"{' '.join(said[clock] for clock in sorted(clocks))} Medians over whole frames after a warm-up, in which "
         "nothing is kept from the frame before. Errors are against the reference through the same lens, not "
         "antialiased, as the methods are not; PSNR, SSIM and FLIP are of sRGB pictures. The reference vouches for the "
