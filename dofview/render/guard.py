@@ -54,10 +54,10 @@ def _seen_depths(
         small = (-(-size[0] // REDUCTION), -(-size[1] // REDUCTION))
         band = MOST_PX // REDUCTION
         canvas = (small[0] + 2 * band, small[1] + 2 * band)
-        images = gpu.targets.image("guard/color", canvas), gpu.targets.image("guard/inverse depth", canvas, 1)
+        depths = gpu.targets.image("guard/inverse depth", canvas, components=1)
         with gpu.profile.section("scene/guard band"):
             view = projection(scene, camera, small, band)
-            draw_scene(gpu, scene, view, images, lights=Lights.of(camera, None))
-        least, greatest, _, _ = reduce_blocks(gpu, images[1], "render/depth_range.frag", "guard/range")
+            draw_scene(gpu, scene, view, (depths,), lights=Lights.of(camera, None), defines={"DEPTH_ONLY": 1})
+        least, greatest, _, _ = reduce_blocks(gpu, depths, "render/depth_range.frag", "guard/range")
         cache.values[key] = (float(greatest) * MARGIN, min(float(least), float(greatest)) / MARGIN)
     return cache.values[key]  # type: ignore[return-value]
