@@ -108,8 +108,8 @@ def test_skipping_changes_nothing(gpu: Gpu, coc: float):
     gpu.profile.begin()
     slow = picture(gpu, color, radii, Params(skip=False))
     assert np.abs(quick - slow).max() <= 1e-5
-    assert counts["passes"] < gpu.profile.counts["passes"]
-    assert counts.get("mipmap smoothings skipped", 0) == (coc >= 0.0)
+    assert counts.get("passes", 0) < gpu.profile.counts["passes"]
+    assert counts.get("mipmap smoothings skipped", 0) == (coc > 0.0)
 
 
 def test_levels_follow_the_largest_blur_and_not_the_picture(gpu: Gpu):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from dofview.gl.pull_push import pull_push
 from dofview.gl.targets import Image
-from dofview.methods.layered_plan import Layer
+from dofview.methods.layered_plan import FAR, Layer
 from dofview.methods.layered_regions import CELL, SLICES, Content, Window
 from dofview.methods.method import Recipe
 from dofview.render.frame import Surfaces
@@ -46,9 +46,14 @@ class Peels:
     ) -> None:
         """Run a shader that includes `matte.glsl` for `layer`, whose filter reaches `reach` px."""
         presence = {"PRESENCE": 1} if reach > 0.0 and "PAPER" not in self.defines else {}
-        how["defines"] = {**self.defines, **presence, **how.get("defines", {})}
+        how["defines"] = {**self._defines(layer), **presence, **how.get("defines", {})}
         values = {"start": self.start, **(values or {}), **self._values(layer)} | ({"reach": reach} if presence else {})
         self.recipe.draw(shader, into, values=values, **self.textures, **how)
+
+    def _defines(self, layer: Layer) -> dict[str, object]:
+        """Of the layers, only the farthest has to do with the background."""
+        unused = () if layer.anchors[3] == -FAR else ("SKY", "EXHAUSTED")
+        return {name: value for name, value in self.defines.items() if name not in unused}
 
     def final(self, focus: Layer, sides: dict[str, Image], *, fill: bool) -> Image:
         """Front buffer over the layer in focus over the back buffer, normalised."""
@@ -70,7 +75,7 @@ class Peels:
         unused = {f"color{m}" for m in range(count, 8)} | {"depths_last"}
         textures = {name: image for name, image in self.textures.items() if name not in unused}
         textures |= {"back": back} if back else {}
-        defines = self.defines | {"PEELS": count, **({"HAS_BACK": 1} if back else {})}
+        defines = self._defines(focus) | {"PEELS": count, **({"HAS_BACK": 1} if back else {})}
         if count < int(str(self.defines["PEELS"])):
             defines.pop("EXHAUSTED", None)
         with self.recipe.gpu.profile.section("layered/fill"):
@@ -95,7 +100,8 @@ class Peels:
         held = [self.frame.cache.holds(key, image) for image in images.values()]
         if not all(held):
             last = peels[-1].inverse_depth
-            sources = {f"depth{m}": peels[m].inverse_depth if m < len(peels) else last for m in range(4 if len(peels) <= 4 else 8)}
+            count = 4 if len(peels) <= 4 else 8
+            sources = {f"depth{m}": peels[m].inverse_depth if m < len(peels) else last for m in range(count)}
             self.recipe.draw("depths.frag", list(images.values()), defines={"PEELS": len(peels)}, **sources)
         return images
 
