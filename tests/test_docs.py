@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import re
+import shutil
 from pathlib import Path
 from types import ModuleType
 
@@ -11,6 +13,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from dofview.bench.plan import full
+from dofview.bench.report import write_report
+from dofview.bench.run import missing
+from dofview.bench.skip_page import skip_page
+from dofview.bench.store import Store
 from dofview.gl.context import Gpu
 from dofview.methods import METHODS, method
 
@@ -106,3 +113,20 @@ def test_the_python_of_the_readme_runs(capsys: pytest.CaptureFixture) -> None:
         exec(smaller, names)
     names["pipeline"].release()
     assert names["picture"].shape[2] == 3 and len(capsys.readouterr().out.splitlines()) == 4
+
+
+def test_the_report_is_what_its_results_say(tmp_path: Path):
+    """`dofview bench --out docs/benchmark` writes it, and measures nothing that is there."""
+    kept = ROOT / "docs" / "benchmark"
+    shutil.copy(kept / "results.jsonl", tmp_path)
+    shutil.copytree(kept / "sheets", tmp_path / "sheets")
+    store = Store(tmp_path)
+    assert not missing(full(), store)
+    write_report(store)
+    assert (tmp_path / "report.md").read_text(encoding="utf-8") == (kept / "report.md").read_text(encoding="utf-8")
+
+
+def test_the_page_of_skips_is_what_its_results_say():
+    kept = ROOT / "docs" / "benchmark"
+    content = json.loads((kept / "skips.json").read_text(encoding="utf-8"))
+    assert skip_page(content) == (kept / "skips.md").read_text(encoding="utf-8")
