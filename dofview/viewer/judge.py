@@ -170,7 +170,7 @@ class Judge(Tool):
         supported = self.supported(app)
         write = imgui.text if supported else imgui.text_disabled
         write(f"{self.verdict.method}{'' if self.verdict.of == _key(app) else ', of another view or setting'}")
-        if imgui.begin_table("##figures", len(COLUMNS)):
+        if imgui.begin_table("##figures", len(COLUMNS), imgui.TableFlags_.sizing_stretch_prop):
             for title in COLUMNS:
                 imgui.table_setup_column(title)
             imgui.table_headers_row()
@@ -196,7 +196,7 @@ def texts(row: Row) -> tuple[str, str, str, str]:
     """The figures as they are shown."""
     if row.share == 0.0:
         return "", "", "", "none"
-    psnr = "equal" if math.isinf(row.psnr) else f"{row.psnr:.2f} dB"
+    psnr = "equal" if math.isinf(row.psnr) else f"{row.psnr:.2f}"
     return psnr, f"{row.ssim:.4f}", f"{row.flip:.4f}", f"{row.share:.0%}"
 
 
