@@ -56,6 +56,10 @@ class Gpu:
         """Release every object; the context itself stays with whoever made it."""
         self.targets.release()
         self.shaders.release()
+        self.drop_blocks()
+
+    def drop_blocks(self) -> None:
+        """Release all uniform buffers; they are made anew when they are asked for."""
         for buffer in self._blocks.values():
             buffer.release()
         self._blocks.clear()

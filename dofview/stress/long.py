@@ -29,9 +29,8 @@ from dofview.stress import shapes
 from dofview.stress.bench import CAMERA
 from dofview.stress.living import Alive, alive, memory_kb
 
-WARM_UP, RESIZE_WARM_UP = 100, 600
-"""Until then shader variants and uniform blocks are still coming that are kept on purpose: 256 blocks at most, a few of
-which belong to each size."""
+WARM_UP, RESIZE_WARM_UP = 100, 300
+"""Until then shader variants are still coming, which are kept on purpose."""
 MOST_KB = 5.0
 """Growth per cycle that is taken for noise."""
 LARGEST = (1920, 270)
@@ -160,6 +159,7 @@ def repeat(run: Run, name: str, cycles: int, on_cycle: Callable[[int], None] = l
 
 def _rested(run: Run) -> Alive:
     """What is alive when every method has drawn one picture and all older images are released."""
+    run.gpu.drop_blocks()
     for _ in range(run.begin()):
         run.switch()
     return alive(run.gpu.ctx)
