@@ -6,6 +6,7 @@ tested against it: at a level of 1 % over all pixels together (Šidák), a pictu
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -26,11 +27,7 @@ SKY = 0.3
 
 def unbiased(bench: Bench, method: str, random: np.random.Generator) -> list[Measured]:
     """The reference lies within the tracer's noise at every pixel; how near the methods come is for the record."""
-    cards = shapes.scattered(random, materials=6)
-    colors = [shapes.unlit(tuple(random.uniform(0.05, 1.0, 3).tolist())) for _ in range(6)]
-    scene = shapes.scene(cards, colors)
-    lens = Lens(radius=random.uniform(0.05, 0.25), focus_distance=random.uniform(3.0, 8.0))
-    runs = _traced(scene, lens, int(random.integers(1 << 20)))
+    scene, lens, runs = _traced_scene(int(random.integers(1 << 20)))
     settings = bench.settings(method, lens, size=(SIZE, SIZE), background=SKY, views=VIEWS)
     if method != "accumulation":
         # A path tracer samples all of the pixel; a method that does not, at twice the size, comes as near as it may.
@@ -39,6 +36,17 @@ def unbiased(bench: Bench, method: str, random: np.random.Generator) -> list[Mea
     picture = bench.picture(scene, settings.with_params(antialias=True))
     other = bench.picture(scene, settings.with_params(antialias=True, progressive=True))
     return [Measured("largest |z| over the limit for all pixels", _largest_z(runs, picture, other))]
+
+
+@functools.lru_cache(maxsize=1)
+def _traced_scene(seed: int) -> tuple[Scene, Lens, np.ndarray]:
+    """A scene, a lens and the tracer's pictures: the same for all methods."""
+    random = np.random.default_rng(seed)
+    cards = shapes.scattered(random, materials=6)
+    colors = [shapes.unlit(tuple(random.uniform(0.05, 1.0, 3).tolist())) for _ in range(6)]
+    scene = shapes.scene(cards, colors)
+    lens = Lens(radius=random.uniform(0.05, 0.25), focus_distance=random.uniform(3.0, 8.0))
+    return scene, lens, _traced(scene, lens, seed)
 
 
 def _largest_z(runs: np.ndarray, picture: np.ndarray, other: np.ndarray) -> float:

@@ -31,7 +31,7 @@ class Measured(NamedTuple):
 class Row:
     """An invariant. `check(bench, method, random)` measures as many values as the row has bounds for the method.
 
-    One that is tried `rarely`, because it takes many times as long as others, gets every fourth seed.
+    One that is tried `rarely`, because it takes many times as long as others, comes last and gets every fourth seed.
     """
 
     number: int

@@ -21,7 +21,7 @@ RARELY = 4
 ROWS: tuple[Row, ...] = tuple(
     sorted(
         (*light.ROWS, *blur.ROWS, *symmetry.ROWS, *motion.ROWS, *pathtraced.ROWS, *drivers.ROWS, *corners.ROWS),
-        key=lambda row: row.number,
+        key=lambda row: (row.rarely, row.number),
     )
 )
 

@@ -18,7 +18,11 @@ layout(location = 0) out vec2 limit;
 
 const float LEAST = 1.0;  // px of CoC radius that any two surfaces must differ by
 const int TAPS = 12;
-const mat2 GOLDEN_TURN = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);  // by the golden angle
+// Mirrored or turned by 90 degrees they are themselves, so that a scene that is gives a picture that is.
+const vec2 DISC[TAPS] = vec2[](
+    vec2(0.450, 0.0), vec2(0.0, 0.450), vec2(-0.450, 0.0), vec2(0.0, -0.450),
+    vec2(0.878, 0.364), vec2(0.364, 0.878), vec2(-0.364, 0.878), vec2(-0.878, 0.364),
+    vec2(-0.878, -0.364), vec2(-0.364, -0.878), vec2(0.364, -0.878), vec2(0.878, -0.364));
 
 float inverse_depth_at(vec2 position)
 {
@@ -57,13 +61,11 @@ float behind(float inverse, float coc)
 bool occludes(float inverse, float coc, float range)
 {
     float highest = coc;
-    vec2 direction = vec2(1.0, 0.0);
     // A group of pixels none of which enters the loop costs nothing; a branch around it might not save that.
     int taps = coc > -0.5 ? 0 : TAPS;
     for (int i = 0; i < taps; ++i) {
-        vec2 position = gl_FragCoord.xy + direction * (range + 1.5) * sqrt((float(i) + 0.5) / float(TAPS));
+        vec2 position = gl_FragCoord.xy + DISC[i] * (range + 1.5);
         highest = max(highest, coc_radius(inverse_depth_at(position)));
-        direction = GOLDEN_TURN * direction;
     }
     return highest - coc > max(params.edge * -coc, LEAST);
 }
