@@ -112,7 +112,7 @@ def page(text: str, table: str) -> str:
 if __name__ == "__main__":
     gpu = create_headless()
     rows = [line for scene in SCENES for line in lines(gpu, scene)]
-    note = f"*{gpu.renderer}, {clock_of(gpu).name} time.* The paper's own, GTX 480, are in italics."
+    note = f"*{gpu.renderer}, {clock_of(gpu).name} time.* The paper's own figures are in italics."
     PAGE.write_text(page(PAGE.read_text("utf-8"), "\n".join([note, "", *HEAD, *rows, *PUBLISHED])), "utf-8")
     print(f"wrote: {PAGE}")
     gpu.release()
