@@ -153,7 +153,7 @@ def repeat(run: Run, name: str, cycles: int, on_cycle: Callable[[int], None] = l
     after = _rested(run)
     return Growth(
         name, cycles, after.objects - before.objects, _slope(memory), after.files - before.files,
-        after.threads - before.threads, after.children,
+        after.threads - before.threads, after.children - before.children,
     )  # fmt: skip
 
 
