@@ -123,9 +123,13 @@ class TargetPool:
         """All living images whose name starts with `prefix`, by name: what a pass browser lists."""
         return [self._images[name] for name in sorted(self._images) if name.startswith(prefix)]
 
+    def __contains__(self, image: Image) -> bool:
+        """Whether `image` lives: it was neither released nor replaced by one of another shape."""
+        return self._images.get(image.name) is image
+
     def touch(self, image: Image) -> None:
         """Count `image` as asked for, so that its contents live through a frame that does not draw it."""
-        if self._images.get(image.name) is image:
+        if image in self:
             self._used[image.name] = self._clock
 
     def collect(self, keep_frames: int | None = None) -> None:

@@ -78,6 +78,11 @@ class FrameCache:
         self._held[image.name] = (key, image)
         return False
 
+    def held(self, key: object, name: str) -> Image | None:
+        """The image called `name` if it was rendered for `key`; None otherwise. Nothing is asked of the caller."""
+        found = self._held.get(name)
+        return found[1] if found is not None and found[0] == key else None
+
     def clear(self) -> None:
         self._held.clear()
         self.values.clear()
@@ -164,7 +169,10 @@ class Frame:
         return found
 
     def _depths(self) -> Image:
-        """Inverse depths of the nearest surfaces, for one use."""
+        """Inverse depths of the nearest surfaces: the pinhole picture's where that is there, else drawn for one use."""
+        drawn = self.cache.held((self.geometry_key, "pinhole"), "frame/pinhole inverse depth")
+        if drawn is not None and drawn in self.gpu.targets:
+            return drawn
         depths = self.gpu.targets.image("frame/inverse depth", self.size, components=1)
         with self.gpu.profile.section("scene/depths"):
             draw_scene(
