@@ -15,6 +15,7 @@ from dofview.gl.targets import Image
 from dofview.lens import Distribution
 from dofview.methods.method import Params as BaseParams
 from dofview.methods.method import Recipe
+from dofview.methods.splatting_aperture import SHARP_PX
 from dofview.methods.splatting_choice import Computation, faster
 from dofview.methods.splatting_points import Points, Reduction, draw_highlights, make_points, search_map
 from dofview.render.frame import Frame
@@ -31,10 +32,8 @@ QUALITIES: tuple[dict[str, object], ...] = (
 )  # fmt: skip
 
 
-SHARP_PX = 0.35
-"""CoC radius up to which a sprite is its own pixel and the picture the pinhole's, px."""
 SHARP_PX_OF_SHAPES = 0.01
-"""The same for lenses that are no disc, whose sprites reach farther."""
+"""What SHARP_PX is for a disc, for lenses that are none, whose sprites reach farther."""
 
 
 class HiddenTest(StrEnum):

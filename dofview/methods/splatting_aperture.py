@@ -32,7 +32,9 @@ class Sprite(NamedTuple):
     textures: dict[str, Image]
 
 
-DISC = Sprite("disc", 1.0, 0.5, {}, {"extent": 1.0, "spread": 0.5}, {})
+SHARP_PX = 0.35
+"""CoC radius up to which a disc's sprite is its own pixel and the picture the pinhole's, px."""
+DISC = Sprite("disc", 1.0, 0.5, {"SHARP_PX": SHARP_PX}, {"extent": 1.0, "spread": 0.5}, {})
 
 
 def sprite_of(recipe: Recipe) -> Sprite:

@@ -12,7 +12,8 @@ uniform int farthest;  // tiles
 
 out vec4 reach;
 
-// Of a point behind the focus that shares a layer with one in focus: 0.35 px and a tolerance of twice that.
+// CoC radius of a point behind the focus that shares a layer with one in focus: that of one that is sharp, and a
+// tolerance of twice it.
 const float MOST_SHARED = 1.1;
 
 bool is_sharp(ivec2 tile, int rows)

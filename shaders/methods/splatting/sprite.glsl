@@ -35,7 +35,7 @@ float sharp_radius()
 #ifdef APERTURE
     return 1.0 / (6.0 * extent * extent);
 #else
-    return 0.35;  // the rim of disc.glsl bends inwards
+    return SHARP_PX;  // the rim of disc.glsl bends inwards
 #endif
 }
 
