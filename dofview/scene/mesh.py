@@ -13,8 +13,7 @@ from dofview.scene.files import Folder
 from dofview.scene.model import Instance, Material, Primitive, Scene
 from dofview.scene.normals import smooth_normals
 from dofview.scene.notes import Notes
-from dofview.scene.obj import origin_for
-from dofview.scene.repair import LARGEST, used_rows
+from dofview.scene.repair import LARGEST, origin_for, used_rows
 
 _CLAY = Material(name="clay", base_color=(0.6, 0.58, 0.55, 1.0), metallic=0.0, roughness=0.6, double_sided=True)
 _PAINTED = Material(name="painted", metallic=0.0, roughness=0.6, double_sided=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from dofview.scene.notes import Notes
@@ -39,3 +41,17 @@ def repaired_colors(colors: np.ndarray, notes: Notes) -> np.ndarray:
     wrong = np.isnan(colors)
     notes.count("vertex colour", "vertex colours", "not a number, taken as white", int(wrong.any(axis=1).sum()))
     return np.clip(np.where(wrong, colors.dtype.type(1), colors), 0.0, colors.dtype.type(BRIGHTEST))
+
+
+def origin_for(positions: np.ndarray) -> np.ndarray:
+    """(3,) float64 to subtract so that float32 keeps the decimals of a model far from the origin.
+
+    The centre of the box rounded to a multiple of a power of two no smaller than the box: zero for a model that is not
+    far away for its size.
+    """
+    if len(positions) == 0:
+        return np.zeros(3)
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    size = float((high - low).max())
+    step = 2.0 ** math.ceil(math.log2(size)) if size > 0 else 2.0**-20
+    return np.round((low + high) / 2 / step) * step

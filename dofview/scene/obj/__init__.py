@@ -9,8 +9,6 @@ materials    entries and pictures → materials
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from dofview.scene.files import Folder
@@ -19,6 +17,7 @@ from dofview.scene.notes import Notes
 from dofview.scene.obj.materials import Materials
 from dofview.scene.obj.mesh import primitives, slots_of, triangles_of
 from dofview.scene.obj.statements import scan
+from dofview.scene.repair import origin_for
 
 
 def read(data: bytes, name: str, folder: Folder) -> Scene:
@@ -45,17 +44,3 @@ def read(data: bytes, name: str, folder: Folder) -> Scene:
         materials=tuple(materials.made) or (Material(),),
         warnings=notes.texts(),
     )
-
-
-def origin_for(positions: np.ndarray) -> np.ndarray:
-    """(3,) float64 to subtract so that float32 keeps the decimals of a model far from the origin.
-
-    The centre of the box rounded to a multiple of a power of two no smaller than the box: zero for a model that is not
-    far away for its size.
-    """
-    if len(positions) == 0:
-        return np.zeros(3)
-    low, high = positions.min(axis=0), positions.max(axis=0)
-    size = float((high - low).max())
-    step = 2.0 ** math.ceil(math.log2(size)) if size > 0 else 2.0**-20
-    return np.round((low + high) / 2 / step) * step
