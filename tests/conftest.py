@@ -12,6 +12,8 @@ import pytest
 os.environ.setdefault("LP_NUM_THREADS", "0")
 
 from dofview.gl.context import Gpu, create_headless  # noqa: E402
+from dofview.pipeline import Pipeline  # noqa: E402
+from dofview.scene.demo import build  # noqa: E402
 
 _made: list[Gpu] = []
 
@@ -39,3 +41,12 @@ def gpu(session_gpu: Gpu) -> Iterator[Gpu]:
     assert session_gpu.ctx.error == "GL_NO_ERROR"
     yield session_gpu
     assert session_gpu.ctx.error == "GL_NO_ERROR"
+
+
+@pytest.fixture(scope="module")
+def demos(session_gpu: Gpu) -> Iterator[dict[str, Pipeline]]:
+    """The three demo scenes that methods are judged on, by name."""
+    pipelines = {name: Pipeline(session_gpu, build(name)) for name in ("foreground", "background", "rail")}
+    yield pipelines
+    for pipeline in pipelines.values():
+        pipeline.release()

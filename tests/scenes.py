@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from dofview.lens import Distribution
+from dofview.scene.demo import view
 from dofview.scene.model import Instance, Material, Picture, Primitive, Scene, Texture
+from dofview.settings import ImageSettings, Settings, apply_view
 
 
 def quad(
@@ -59,3 +62,9 @@ def constant(value: float = 0.5) -> Scene:
 def empty() -> Scene:
     """Nothing at all."""
     return Scene("empty", (), ())
+
+
+def demo_through_gaussian(name: str, method: str, size: tuple[int, int] = (512, 384)) -> Settings:
+    """The demo scene's own view by `method`, through the lens that methods with Gaussian blur are made for."""
+    settings = apply_view(Settings(), view(name), name).with_(method=method, image=ImageSettings(size=size))
+    return settings.with_(lens=settings.lens.model_copy(update={"distribution": Distribution.GAUSSIAN}))

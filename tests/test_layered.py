@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
 from image_frame import ImageFrame, moments, point
-from scenes import noise_material, quad, scene_of, three_planes, unlit
+from scenes import demo_through_gaussian, noise_material, quad, scene_of, three_planes, unlit
 
 from dofview.gl.context import Gpu
 from dofview.gl.tiles import TILE, coarser, grown, rectangles
@@ -32,7 +31,6 @@ from dofview.methods.layered_regions import CELL, SLICES, Content, Window, sprea
 from dofview.metrics import psnr
 from dofview.pipeline import Pipeline
 from dofview.scene.camera import Camera
-from dofview.scene.demo import build, view
 from dofview.settings import ImageSettings, Settings
 
 LAW = CocLaw(scale=150.0, inverse_focus=0.2)
@@ -312,28 +310,10 @@ def test_every_step_can_be_looked_at(gpu: Gpu):
     pipeline.release()
 
 
-def demo_settings(name: str, size: tuple[int, int] = (512, 384)) -> Settings:
-    seen = view(name)
-    return Settings.model_validate(
-        {
-            "camera": seen["camera"], "lens": {**seen["lens"], "distribution": Distribution.GAUSSIAN},
-            "background_linear": seen["background_linear"], "method": "layered", "image": ImageSettings(size=size),
-        }
-    )  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def demos(session_gpu: Gpu) -> Iterator[dict[str, Pipeline]]:
-    pipelines = {name: Pipeline(session_gpu, build(name)) for name in ("foreground", "background", "rail")}
-    yield pipelines
-    for pipeline in pipelines.values():
-        pipeline.release()
-
-
 # Against 48 views, whose own error is a part of what is measured: against 400 it is 42.7, 44.5 and 40.7 dB.
 @pytest.mark.parametrize("name, floor", [("foreground", 40.0), ("background", 41.5), ("rail", 38.8)])
 def test_quality_is_above_its_floor(demos: dict[str, Pipeline], name: str, floor: float):
-    settings = demo_settings(name)
+    settings = demo_through_gaussian(name, "layered")
 
     def render(**params: object) -> np.ndarray:
         return demos[name].render(settings.with_params(**params)).pixels()
@@ -352,7 +332,7 @@ def test_quality_is_above_its_floor(demos: dict[str, Pipeline], name: str, floor
 @pytest.mark.parametrize("slider", ["focus", "aperture"])
 def test_sliders_move_the_picture_smoothly(demos: dict[str, Pipeline], slider: str):
     """No popping where a layer comes, goes, empties or changes its size: no step is over 3 times the median one."""
-    settings = demo_settings("rail", (96, 72))
+    settings = demo_through_gaussian("rail", "layered", (96, 72))
     lens, changes, before = settings.lens, [], None
     for t in np.linspace(0.05, 1.0, 80):
         if slider == "focus":

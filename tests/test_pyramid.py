@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
 from image_frame import ImageFrame, moments, point
-from scenes import quad, scene_of, unlit
+from scenes import demo_through_gaussian, quad, scene_of, unlit
 
 from dofview.gl.context import Gpu
 from dofview.gl.pyramids import Analysis
@@ -20,7 +19,6 @@ from dofview.metrics import psnr
 from dofview.pipeline import Pipeline
 from dofview.render.occupancy import occupancy
 from dofview.scene.camera import Camera
-from dofview.scene.demo import build, view
 from dofview.settings import ImageSettings, Settings
 
 PAPER = Params(analysis=Analysis.BOX4, blur=Blur.PAPER, matting=Matting.PAPER)
@@ -209,28 +207,10 @@ def test_every_step_can_be_looked_at(gpu: Gpu):
     assert 0.0 < images["-2 blurred"][20, 22, 3] < 1.0
 
 
-def demo_settings(name: str, size: tuple[int, int]) -> Settings:
-    seen = view(name)
-    return Settings.model_validate(
-        {
-            "camera": seen["camera"], "lens": {**seen["lens"], "distribution": Distribution.GAUSSIAN},
-            "background_linear": seen["background_linear"], "method": "pyramid", "image": ImageSettings(size=size),
-        }
-    )  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def demos(session_gpu: Gpu) -> Iterator[dict[str, Pipeline]]:
-    pipelines = {name: Pipeline(session_gpu, build(name)) for name in ("foreground", "background", "rail")}
-    yield pipelines
-    for pipeline in pipelines.values():
-        pipeline.release()
-
-
 @pytest.mark.parametrize("name, floor", [("foreground", 30.0), ("background", 37.0), ("rail", 37.0)])
 def test_quality_is_above_its_floor(demos: dict[str, Pipeline], name: str, floor: float):
     """Asked are 30, 37 and 37 dB."""
-    settings = demo_settings(name, (512, 384))
+    settings = demo_through_gaussian(name, "pyramid")
     truth = demos[name].render(settings.with_(method="accumulation").with_params(views=48)).pixels()
     reached = psnr(demos[name].render(settings).pixels(), truth)
     paper = psnr(demos[name].render(settings.with_params(**PAPER.model_dump())).pixels(), truth)
@@ -241,7 +221,7 @@ def test_quality_is_above_its_floor(demos: dict[str, Pipeline], name: str, floor
 @pytest.mark.parametrize("slider", ["focus", "aperture"])
 def test_sliders_move_the_picture_smoothly(demos: dict[str, Pipeline], slider: str):
     """No popping where a sub-image comes or goes or begins to cull: no step is more than 3 times the median one."""
-    settings = demo_settings("foreground", (96, 72))
+    settings = demo_through_gaussian("foreground", "pyramid", (96, 72))
     lens, changes, before = settings.lens, [], None
     for t in np.linspace(0.05, 1.0, 100):
         if slider == "focus":
