@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from dofview.gl.pull_push import pull_push
 from dofview.gl.targets import Image
@@ -42,13 +43,14 @@ class Peels:
             self.textures["sky_distance"] = self._sky_distance()
 
     def draw(
-        self, shader: str, into: Image, layer: Layer, *, values: dict | None = None, reach: float = 0.0, **how: object
-    ) -> None:
+        self, shader: str, into: Image, layer: Layer, *, values: dict | None = None, reach: float = 0.0,
+        images: Mapping[str, Image] | None = None, **how: Any,
+    ) -> None:  # fmt: skip
         """Run a shader that includes `matte.glsl` for `layer`, whose filter reaches `reach` px."""
         presence = {"PRESENCE": 1} if reach > 0.0 and "PAPER" not in self.defines else {}
         how["defines"] = {**self._defines(layer), **presence, **how.get("defines", {})}
         values = {"start": self.start, **(values or {}), **self._values(layer)} | ({"reach": reach} if presence else {})
-        self.recipe.draw(shader, into, values=values, **self.textures, **how)
+        self.recipe.draw(shader, into, values=values, images={**self.textures, **(images or {})}, **how)
 
     def _defines(self, layer: Layer) -> dict[str, object]:
         """Of the layers, only the farthest has to do with the background."""
@@ -64,7 +66,7 @@ class Peels:
         picture = self.recipe.image("picture")
         guard = self.frame.guard
         self.draw(
-            "final.frag", picture, focus, defines=defines, viewport=(guard, guard, *self.frame.inner_size), **sides
+            "final.frag", picture, focus, defines=defines, viewport=(guard, guard, *self.frame.inner_size), images=sides
         )
         return picture
 
@@ -102,7 +104,7 @@ class Peels:
             last = peels[-1].inverse_depth
             count = 4 if len(peels) <= 4 else 8
             sources = {f"depth{m}": peels[m].inverse_depth if m < len(peels) else last for m in range(count)}
-            self.recipe.draw("depths.frag", list(images.values()), defines={"PEELS": len(peels)}, **sources)
+            self.recipe.draw("depths.frag", list(images.values()), defines={"PEELS": len(peels)}, images=sources)
         return images
 
     def _sky_distance(self) -> Image:
@@ -127,6 +129,6 @@ class Peels:
             values = {"nearest": depths.nearest, "slices_per_depth": slices, "background_counts": background_counts}
             defines = {"CELL": CELL, "PEELS": self.defines["PEELS"]}
             depths_of_all = {name: image for name, image in self.depths.items() if name != "depths_nearest"}
-            self.recipe.draw("content.frag", images, defines=defines, values=values, **depths_of_all)
+            self.recipe.draw("content.frag", images, defines=defines, values=values, images=depths_of_all)
             self.frame.cache.values[key] = Content(depths.nearest, slices, *(image.pixels()[::-1] for image in images))
-        return self.frame.cache.values[key]
+        return self.frame.cache.values[key]  # type: ignore[return-value]

@@ -130,7 +130,7 @@ def steps(layers: Sequence[Layer], content: Content, window: Window | None) -> l
     found = []
     for number, (layer, sigma) in enumerate(zip(layers, cascade(layers), strict=True)):
         reach = REACH * layer.sigma + (2 << layer.level)
-        region = region & window.tiles(region.shape, reach) if skip else region
+        region = region & window.tiles(region.shape, reach) if window is not None else region
         own = (tiled(cells[number]) if skip else np.ones_like(region)) & region
         others = held[number] & region & (~own | (layer.level > 0))
         finished = np.zeros_like(region)

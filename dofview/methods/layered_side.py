@@ -24,8 +24,6 @@ MOST_TAPS = 32
 
 UNCHANGED: Weights = (1.0, 0.0)
 
-NEVER = object()
-
 
 class Side:
     """All layers in front of the focus, or all behind it, blurred and blended; `inspect` keeps every step's images."""
@@ -40,7 +38,7 @@ class Side:
         self.inspect = inspect
         self.start = peels.start if name == "back" else NOTHING
         self._cleared: set[Image] = set()
-        self._filled: Tiles | None | object = NEVER
+        self._filled: list[Tiles | None] = []
 
     def cascaded(self) -> Image:
         """Blur recursively: a layer joins the buffer, the buffer is blurred, the next one joins (GPU Pro 4, p. 204)."""
@@ -64,6 +62,7 @@ class Side:
             if self.inspect:
                 self._join(step, self._image("layer", level, number), places, alone=True)
                 self._convolved(across, "blurred", level, kernel(step.sigma), (0, 1), places.after, number + 1)
+        assert across is not None, "a side has a layer"
         level, weights = plan[-1].layer.level, kernel(plan[-1].sigma)
         if level == 0:
             self._convolve(across, total, 0, weights, (0, 1), tiles[-1].rest)
@@ -139,7 +138,7 @@ class Side:
         target = self._emptied(places.own) if added else into
         self.peels.draw(
             "join.frag", target, layer, reach=layer.reach * (step.sigma > 0.0), defines=defines, values=values,
-            within=places.own, clear=not added and self._clear(into), **({"buffered": before} if before else {}),
+            within=places.own, clear=not added and self._clear(into), images={"buffered": before} if before else None,
         )  # fmt: skip
         if added:
             self._reduce(target, layer.level, into, places.near, ADD if self.name == "front" or alone else OVER)
@@ -147,11 +146,11 @@ class Side:
     def _emptied(self, own: Tiles | None) -> Image:
         """The image, of full size, for what a layer adds in the tiles `own`: with nothing of the former layer's."""
         target = self.recipe.image(f"{self.name} added", linear=True)
-        if self._filled is NEVER:
+        if not self._filled:
             self.gpu.targets.framebuffer((target,)).clear()
-        else:
-            self.recipe.draw("pass/clear.frag", target, within=self._filled)
-        self._filled = own
+        for tiles in self._filled:
+            self.recipe.draw("pass/clear.frag", target, within=tiles)
+        self._filled = [own]
         return target
 
     def _reduce(self, fine: Image, level: int, into: Image, tiles: Tiles | None, blend: tuple) -> None:

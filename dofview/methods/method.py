@@ -13,7 +13,7 @@ from typing import Any, Protocol
 from moderngl import Query
 from pydantic import BaseModel, ConfigDict
 
-from dofview.gl.passes import Color, draw
+from dofview.gl.passes import Color, Textures, draw
 from dofview.gl.targets import Image
 from dofview.gl.tiles import Tiles
 from dofview.render.frame import Frame
@@ -70,7 +70,7 @@ class Recipe:
         defines: Mapping[str, object] | None = None, blocks: Mapping[str, BaseModel] | None = None,
         blend: tuple | None = None, clear: bool | Color = False,
         viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None, sprites: int | None = None,
-        when: Query | None = None, images: Mapping[str, Image] | None = None, **textures: Image,
+        when: Query | None = None, images: Textures | None = None, **textures: Image,
     ) -> None:  # fmt: skip
         """Run `shader` of the method's folder (or of shaders/ when it has a folder of its own) into `into`. It reads
         `textures`, and `images` where their names are not known beforehand. `sprites` many are placed by the vertex

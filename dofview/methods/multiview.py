@@ -12,6 +12,7 @@ from enum import StrEnum
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
+from dofview.gl.passes import AnyTexture
 from dofview.gl.targets import Image
 from dofview.lens import focal_px
 from dofview.methods.method import Params as BaseParams
@@ -36,7 +37,7 @@ TITLE = "Multiview synthesis"
 CITATION = "S. Lee, E. Eisemann, H.-P. Seidel. Depth-of-Field Rendering with Multiview Synthesis. ACM TOG 28(5), 2009."
 REQUIRES_GL = 330
 GUARD_BAND = True
-QUALITIES = (
+QUALITIES: tuple[dict[str, object], ...] = (
     {"samples": 8, "layers": 8, "probes": 1}, {"samples": 16}, {}, {"samples": 64, "layers": 24},
 )  # fmt: skip
 NOISE_SIZE = 64
@@ -170,7 +171,7 @@ def _trace(
 ) -> None:  # fmt: skip
     frame = recipe.frame
     blocks: dict[str, BaseModel] = {"Slabs": layers.slabs}
-    textures = {**layers.images, **cones.images, "mask": reach.image, "noise": _noise(recipe)}
+    textures: dict[str, AnyTexture] = {**layers.images, **cones.images, "mask": reach.image, "noise": _noise(recipe)}
     textures["lens_points"] = _points(recipe, params)
     if layers.defines:
         blocks |= {"View": _view(frame), "Lights": frame.lights.block}
