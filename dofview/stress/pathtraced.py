@@ -35,7 +35,7 @@ def unbiased(bench: Bench, method: str, random: np.random.Generator) -> list[Mea
         return [Measured("PSNR, dB", psnr(bench.picture(scene, doubled), runs.mean(axis=0)), at_least=True)]
     picture = bench.picture(scene, settings.with_params(antialias=True))
     other = bench.picture(scene, settings.with_params(antialias=True, progressive=True))
-    return [Measured("largest |z| over the limit for all pixels", _largest_z(runs, picture, other))]
+    return [Measured("largest size of z over the limit for all pixels", _largest_z(runs, picture, other))]
 
 
 @functools.lru_cache(maxsize=1)
