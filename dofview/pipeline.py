@@ -84,7 +84,7 @@ class Pipeline:
         if self._reference is not None:
             self._reference.touch()
         if ends_frame:
-            self.gpu.targets.collect()
+            self.gpu.end_frame()
         return Result(picture, frame, dict(self.gpu.profile.counts))
 
     def shown(self, result: Result, settings: Settings) -> np.ndarray:

@@ -15,7 +15,8 @@ from dofview.gl.timing import SOFTWARE_RENDERERS, Profile
 REQUIRED = 330
 """What the viewer and most methods need; a method may ask for more (`REQUIRES_GL`). macOS stops at 410."""
 
-MOST_BLOCKS = 256
+MOST_BLOCKS, KEPT_FRAMES = 256, 2
+"""Uniform buffers kept within a frame, and for how many frames after that in which they were last used."""
 
 REMEDY = "install a graphics driver, or Mesa's software OpenGL (Debian: apt install libgl1-mesa-dri libegl1 libgl1)"
 
@@ -42,25 +43,31 @@ class Gpu:
         self.samples_passed = ctx.query(samples=True)
         """The one occlusion query: moderngl cannot release queries, so they are made once and used again."""
         self.facts: dict[str, object] = {}
-        self._blocks: dict[bytes, moderngl.Buffer] = {}
+        self._blocks: dict[bytes, tuple[moderngl.Buffer, int]] = {}
+        self._frame = 0
 
     def block(self, data: bytes) -> moderngl.Buffer:
         """Return a uniform buffer holding `data`. None is ever rewritten, so no draw in flight is disturbed."""
-        buffer = self._blocks.pop(data, None) or self.ctx.buffer(data)
-        self._blocks[data] = buffer
+        kept = self._blocks.pop(data, None)
+        buffer = kept[0] if kept else self.ctx.buffer(data)
+        self._blocks[data] = buffer, self._frame
         if len(self._blocks) > MOST_BLOCKS:
-            self._blocks.pop(next(iter(self._blocks))).release()
+            self._blocks.pop(next(iter(self._blocks)))[0].release()
         return buffer
+
+    def end_frame(self) -> None:
+        """Release images and uniform buffers that were not used lately."""
+        self.targets.collect()
+        self._frame += 1
+        # The one used longest ago comes first.
+        while self._blocks and next(iter(self._blocks.values()))[1] < self._frame - KEPT_FRAMES:
+            self._blocks.pop(next(iter(self._blocks)))[0].release()
 
     def release(self) -> None:
         """Release every object; the context itself stays with whoever made it."""
         self.targets.release()
         self.shaders.release()
-        self.drop_blocks()
-
-    def drop_blocks(self) -> None:
-        """Release all uniform buffers; they are made anew when they are asked for."""
-        for buffer in self._blocks.values():
+        for buffer, _ in self._blocks.values():
             buffer.release()
         self._blocks.clear()
 

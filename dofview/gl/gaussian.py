@@ -11,7 +11,7 @@ same when it is reduced to half or a quarter of the size, blurred with what vari
 from __future__ import annotations
 
 import math
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -28,7 +28,7 @@ COARSE_SIGMA = 2.5
 """From this σ on, px, half size is used, and from twice this a quarter, and so on: 68 dB or more from full size."""
 
 
-@cache
+@lru_cache(maxsize=256)
 def kernel(sigma: float, truncation: float = TRUNCATION) -> tuple[float, ...]:
     """Weights w₀ … w_R of a symmetric kernel at texel distances 0 … R: their sum is 1 and their variance `sigma`².
 

@@ -29,7 +29,7 @@ from dofview.stress import shapes
 from dofview.stress.bench import CAMERA
 from dofview.stress.living import Alive, alive, memory_kb
 
-WARM_UP, RESIZE_WARM_UP = 100, 300
+WARM_UP = 100
 """Until then shader variants are still coming, which are kept on purpose."""
 MOST_KB = 5.0
 """Growth per cycle that is taken for noise."""
@@ -84,9 +84,18 @@ class Run:
         )  # fmt: skip
         return settings.with_params(views=2) if settings.method == "accumulation" else settings
 
-    def resize(self) -> None:
+    def resize(self, narrower: int = 0) -> None:
         width, height = (int(self.random.integers(1, side + 1)) for side in LARGEST)
-        self.pipeline.render(self.settings((width, height)))
+        self.pipeline.render(self.settings((max(width - narrower, 1), height)))
+
+    def resize_beforehand(self, cycles: int) -> None:
+        """Go through the sizes to come, a pixel narrower: so there are the shaders that they need, of which some serve
+        one size in a thousand, but nothing that is kept for a size."""
+        coming = self.random.bit_generator.state
+        self.begin()
+        for _ in range(cycles):
+            self.resize(narrower=1)
+        self.random.bit_generator.state = coming
 
     def switch(self) -> None:
         self.pipeline.render(self.settings())
@@ -142,8 +151,11 @@ def opened(gpu: Gpu, seed: int = 1) -> Iterator[Run]:
 def repeat(run: Run, name: str, cycles: int, on_cycle: Callable[[int], None] = lambda cycle: None) -> Growth:
     """Do `name` `cycles` times after a warm-up and say what is left over."""
     act = run.actions()[name]
-    for _ in range(RESIZE_WARM_UP if name == "resize" else WARM_UP):
-        act()
+    if name == "resize":
+        run.resize_beforehand(cycles)
+    else:
+        for _ in range(WARM_UP):
+            act()
     before, memory = _rested(run), []
     for cycle in range(cycles):
         act()
@@ -158,8 +170,7 @@ def repeat(run: Run, name: str, cycles: int, on_cycle: Callable[[int], None] = l
 
 
 def _rested(run: Run) -> Alive:
-    """What is alive when every method has drawn one picture and all older images are released."""
-    run.gpu.drop_blocks()
+    """What is alive when every method has drawn one picture and what is older is released."""
     for _ in range(run.begin()):
         run.switch()
     return alive(run.gpu.ctx)
