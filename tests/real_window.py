@@ -51,11 +51,13 @@ def screen(home: Path, size: tuple[int, int] = (1400, 900)) -> Iterator[dict[str
 class Window:
     """A running viewer. It works in `folder`, where what it saves is found."""
 
+    program: tuple[str, ...] = ("-m", "dofview")
+
     def __init__(self, environment: dict[str, str], folder: Path, size: tuple[int, int], *arguments: str):
         self.environment, self.folder, self.size = environment, folder, size
         self.errors = (folder / "errors.txt").open("w+")
         self.log = folder / "viewer.log"
-        command = [sys.executable, "-m", "dofview", *arguments]
+        command = [sys.executable, *self.program, *arguments]
         self.process = subprocess.Popen(
             [*command, "--size", f"{size[0]}x{size[1]}", "--log", str(self.log)],
             cwd=folder, env=environment, stderr=self.errors, text=True,

@@ -208,13 +208,14 @@ class App:
 
     def _render(self) -> None:
         self.gpu.ctx.finish()
-        start = time.perf_counter()
+        start, spent = time.perf_counter(), time.process_time()
         self.gpu.profile.timing = self.timing
         self.result = self.pipeline.render(self.settings)
         self.gpu.profile.timing = False
         self.gpu.ctx.finish()
         self.milliseconds = [*self.milliseconds[-119:], (time.perf_counter() - start) * 1e3]
-        log.info("rendered %s in %.1f ms", self.settings.method, self.milliseconds[-1])
+        spent = (time.process_time() - spent) * 1e3
+        log.info("rendered %s in %.1f ms, %.1f of the processor", self.settings.method, self.milliseconds[-1], spent)
         self.passes = self.gpu.profile.resolve() if self.timing else {}
         self.scene_renders += 1
         self._rendered = self.picture_key
