@@ -186,6 +186,7 @@ def bench(
     *, out: Path = Path("bench"), quick: Annotated[bool, Parameter(negative="")] = False, scenes: str | None = None,
     methods: str | None = None, coc: str | None = None, sizes: str | None = None, frames: int | None = None,
     views: int | None = None, scheduler: str | None = None, skips: Annotated[bool, Parameter(negative="")] = False,
+    fetches: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:  # fmt: skip
     """Measure run time against error over scenes, methods, lenses and sizes, and write a report.
 
@@ -203,13 +204,14 @@ def bench(
         Address of a Dask scheduler whose workers measure.
     skips
         Measure instead what is left out of frames that do not need it, with and without.
+    fetches
+        Count instead what every method fetches, beside what its page derives.
     """
-    from dofview.cli.benching import run_bench, run_skips
+    from dofview.cli.benching import run_bench, run_fetches, run_skips
 
-    if skips:
-        run_skips(out)
+    if skips or fetches:
+        (run_skips if skips else run_fetches)(out)
         return
-
     run_bench(
         out, small=quick, scenes=scenes, methods=methods, coc=coc, sizes=sizes, frames=frames, views=views,
         scheduler=scheduler,

@@ -10,6 +10,8 @@ from typing import Any
 from rich.console import Console
 from rich.progress import Progress
 
+from dofview.bench.derived import DERIVED
+from dofview.bench.fetches import SCENES, measure_fetches
 from dofview.bench.pareto import pick, quality
 from dofview.bench.plan import Case, Sweep, cases, full, quick
 from dofview.bench.report import write_report
@@ -50,6 +52,16 @@ def run_skips(out: Path) -> None:
         task = progress.add_task("measuring", total=total)
         measure_skips(out, lambda record: progress.update(task, advance=1, description=record["what"]))
     print(f"{total} measurements in {out}: skips.md, skips.json")
+
+
+def run_fetches(out: Path) -> None:
+    """Count what every method fetches into `out`."""
+    with Progress(console=Console(stderr=True)) as progress:
+        task = progress.add_task("counting", total=len(SCENES) * len(DERIVED))
+        measure_fetches(
+            out, lambda found: progress.update(task, advance=1, description=f"{found.scene} {found.method}")
+        )
+    print(f"{len(SCENES) * len(DERIVED)} frames counted in {out}: fetches.md")
 
 
 def run_pick(

@@ -105,3 +105,4 @@ def draw(
         program.arrays[0].render(moderngl.TRIANGLES, vertices=vertices)
     gpu.profile.count("passes")
     gpu.profile.count("sprites" if sprites else "fragments", sprites or fragments)
+    gpu.profile.count("blended fragments", fragments if blend and not sprites else 0)

@@ -149,7 +149,7 @@ class ShaderLibrary:
         self._requests.clear()
 
     def _build(self, paths: tuple[str, ...], defines: Defines, blocks: Mapping[str, str]) -> Program:
-        sources = {Path(p).suffix: flatten(p, defines, blocks, self._version) for p in paths}
+        sources = {Path(p).suffix: self._source(p, defines, blocks) for p in paths}
         stages = {_STAGES[suffix]: source.text for suffix, source in sources.items()}
         try:
             program = self._ctx.program(**stages)  # type: ignore[arg-type]
@@ -163,6 +163,10 @@ class ShaderLibrary:
         values = frozenset(name for kind, name in declared if "sampler" not in kind)
         names = frozenset(m["name"] for m in _BLOCK.finditer(text))
         return Program(program, samplers, values, names)
+
+    def _source(self, path: str, defines: Defines, blocks: Mapping[str, str]) -> Source:
+        """The text of one stage."""
+        return flatten(path, defines, blocks, self._version)
 
     @staticmethod
     def _newest() -> float:

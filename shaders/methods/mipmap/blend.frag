@@ -36,10 +36,11 @@ float ring_variance(float d)
 
 #ifdef SMOOTHED
 // DoB where blurred foreground is near (eq 11, figure 8b): read from a coarse level of B, so that blur fades out across
-// a silhouette instead of stopping there.
-float smoothed_sigma(vec2 position)
+// a silhouette instead of stopping there. Where none is, it is the pixel's own.
+float smoothed_sigma(vec2 position, float own)
 {
     float n = paper_level(textureLod(don, 0.5 * position / vec2(textureSize(don, 0)), 0.0).r);
+    if (n <= 0.0) return own;
     int lower = min(int(n), LAST_LEVEL - 1);
     return between_levels(even_zbn, odd_zbn, lower, n - float(lower), position).y;
 }
@@ -50,7 +51,7 @@ void main()
     vec2 position = gl_FragCoord.xy;
     float coc = coc_radius(texelFetch(inverse_depth, ivec2(position), 0).r), sigma = lens.sigma * abs(coc);
 #ifdef SMOOTHED
-    sigma = smoothed_sigma(position);
+    sigma = smoothed_sigma(position, sigma);
 #endif
 
 #ifdef PAPER
