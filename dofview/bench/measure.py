@@ -15,7 +15,7 @@ import numpy as np
 import dofview
 from dofview import metrics
 from dofview.bench.pictures import side_by_side
-from dofview.bench.plan import Case, Sweep, is_default
+from dofview.bench.plan import FARTHEST, OWN, Case, Sweep, is_default
 from dofview.bench.timing import ENOUGH_MS, clock_of, pass_times, spread, timed
 from dofview.errors import InputError
 from dofview.framing import opening
@@ -79,16 +79,20 @@ class Bench:
 
     def settings(self, case: Case) -> Settings:
         """The settings of a case: the scene's own view, its lens opened until the mean CoC is the case's."""
-        key = (case.scene, case.size)
+        key = (case.scene, case.size, case.focus)
         if key not in self._lenses:
             pipeline = self.pipeline(case.scene)
             base = opening(pipeline.scene.scene, case.scene)
             base = base.with_(image=base.image.model_copy(update={"size": case.size}))
+            if case.focus == FARTHEST:
+                farthest = 1.0 / pipeline.frame(base, guard=False).depth_range().farthest_surface
+                base = base.with_(lens=base.lens.model_copy(update={"focus_distance": farthest}))
             self._lenses[key] = base, _lens_of_mean_coc(pipeline, base)
         base, per_px = self._lenses[key]
         radius = per_px.radius * case.coc_px
         lens = per_px.model_copy(update={"radius": radius, "distribution": Distribution(case.distribution)})
-        return base.with_(lens=lens, method=case.method).with_params(**dict(case.parameters))
+        image = base.image.model_copy(update={"guard_px": case.guard})
+        return base.with_(lens=lens, image=image, method=case.method).with_params(**dict(case.parameters))
 
     def truth(self, case: Case, sweep: Sweep) -> Truth:
         """The reference of a case, without antialiasing as the methods are."""
@@ -127,6 +131,8 @@ class Bench:
         assert self._folder is not None
         words = [case.scene.removeprefix("demo:"), case.method, case.distribution, f"{case.coc_px:g}"]
         words.append("x".join(map(str, case.size)))
+        words += [] if case.focus == OWN else [case.focus]
+        words += [] if case.guard is None else [f"guard{case.guard}"]
         name = "_".join("".join(c if c.isalnum() or c in "-." else "-" for c in word) for word in words)
         (self._folder / "pictures").mkdir(exist_ok=True)
         side_by_side(self._folder / "pictures" / f"{name}.jpg", pixels, truth.pixels)

@@ -12,7 +12,7 @@ from pathlib import Path
 from dofview.bench import plots, tables
 from dofview.bench.pareto import quality
 from dofview.bench.pictures import sheet
-from dofview.bench.plan import is_default, natural
+from dofview.bench.plan import is_default, natural, own_view
 from dofview.bench.store import Store
 from dofview.bench.tables import Table
 from dofview.export import write_whole
@@ -42,20 +42,20 @@ def write_report(store: Store) -> None:
 
 
 def _blocks(store: Store) -> Iterator[Block]:
-    records = store.records
     yield f"# {TITLE}"
-    yield _head(records)
+    yield _head(store.records)
+    records = list(filter(own_view, store.records))
     yield tables.summary([r for r in records if _usual(r, records)])
     yield "## Error against time"
-    yield from _pareto(store)
+    yield from _pareto(store, records)
     yield "## What a frame costs"
-    yield from _costs(store)
+    yield from _costs(store, records)
     yield "## Pictures"
     yield "Above, what each method makes; below, how far it is from the reference through the same lens."
-    yield from _sheets(store)
-    yield tables.beside_the_papers(records)
+    yield from _sheets(store, records)
+    yield tables.beside_the_papers(store.records)
     yield tables.lenses(records)
-    yield from tables.all_rows(records)
+    yield from tables.all_rows(store.records)
 
 
 def _head(records: list[dict]) -> str:
@@ -94,16 +94,15 @@ def _usual(record: dict, records: list[dict]) -> bool:
     return usual and (record["method"] == "accumulation" or record["distribution"] == natural(record["method"]))
 
 
-def _pareto(store: Store) -> Iterator[Block]:
-    found = [r for r in store.records if _usual(r, store.records)]
+def _pareto(store: Store, records: list[dict]) -> Iterator[Block]:
+    found = [r for r in records if _usual(r, records)]
     for coc in sorted({r["coc_px"] for r in found if not is_default(r)} or {r["coc_px"] for r in found}):
         panels = _by_scene([r for r in found if r["coc_px"] == coc])
         title = f"PSNR over time, mean CoC {coc:g} px; to the upper left is better, the grey line is the Pareto front"
         yield _saved(store, f"pareto-{coc:g}px", plots.error_against_time(panels), title)
 
 
-def _costs(store: Store) -> Iterator[Block]:
-    records = store.records
+def _costs(store: Store, records: list[dict]) -> Iterator[Block]:
     usual = [r for r in records if _usual(r, records)]
     if len({r["coc_px"] for r in usual}) > 1:
         figure = plots.cost_against(_by_scene(usual), "coc_px", "mean CoC diameter, px")
@@ -142,9 +141,9 @@ def _varied(records: list[dict], across: str, coc: float) -> list[dict]:
     return best if len({plots.value_of(r, across) for r in best}) > 1 else []
 
 
-def _sheets(store: Store) -> Iterator[Block]:
+def _sheets(store: Store, records: list[dict]) -> Iterator[Block]:
     """A sheet a scene at the middle blur, made anew while the pictures of the cases are there."""
-    usual = [r for r in store.records if _usual(r, store.records) and is_default(r)]
+    usual = [r for r in records if _usual(r, records) and is_default(r)]
     middle = _middle(usual)
     for scene in dict.fromkeys(r["scene"] for r in usual):
         rows = []

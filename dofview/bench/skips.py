@@ -6,6 +6,7 @@ that gives the rule something to do.
 
 from __future__ import annotations
 
+import itertools
 import json
 import statistics
 from collections.abc import Callable, Iterator
@@ -20,6 +21,7 @@ from dofview.bench.plan import Case, natural
 from dofview.bench.skip_page import skip_page
 from dofview.bench.timing import timed
 from dofview.export import write_whole
+from dofview.metrics import psnr
 from dofview.pipeline import Pipeline
 from dofview.render.reference import Reference
 from dofview.settings import Settings
@@ -27,7 +29,8 @@ from dofview.settings import Settings
 SCENES = ("demo:foreground", "demo:background", "demo:rail")
 SIZE = (256, 192)
 COC_PX = 8.0
-FRAMES = 3
+FRAMES, MOST_FRAMES, ENOUGH_MS = 3, 20, 1200.0
+"""Frames each way: at least, at most, and how long they take together when there are no more."""
 
 See = Callable[[Pipeline, Settings], Settings]
 
@@ -156,7 +159,9 @@ def _switched(bench: Bench, pipeline: Pipeline, settings: Settings, skip: Skip) 
     """Frames in turn with the work left out and done: milliseconds of both, and how far the pictures differ."""
     profile, pictures = bench.gpu.profile, {}
     times: dict[bool, list[float]] = {True: [], False: []}
-    for left_out in (True, False) * FRAMES:
+    for left_out in itertools.cycle((True, False)):
+        if left_out and _enough(times[True]):
+            break
         profile.done_anyway = frozenset() if left_out else frozenset({skip.counter})
         pipeline.scene.culling = left_out or skip.counter != "pieces culled"
         if left_out not in pictures:
@@ -165,6 +170,11 @@ def _switched(bench: Bench, pipeline: Pipeline, settings: Settings, skip: Skip) 
         times[left_out] += timed(pipeline, settings, None, bench.clock)[1]
     profile.done_anyway, pipeline.scene.culling = frozenset(), True
     return {**_times(times), "max_difference": _difference(pictures), "count": _count(pipeline, settings, skip.counter)}
+
+
+def _enough(milliseconds: list[float]) -> bool:
+    count = len(milliseconds)
+    return count >= MOST_FRAMES or (count >= FRAMES and sum(milliseconds) >= ENOUGH_MS)
 
 
 def _count(pipeline: Pipeline, settings: Settings, counter: str) -> int:
@@ -209,8 +219,10 @@ def _converged(bench: Bench, pipeline: Pipeline, settings: Settings, skip: Skip)
             reference.add(16)
         bench.gpu.ctx.finish()
         times[ends] = [(bench.clock.now() - start) * 1e3]
-        pictures[ends], views[ends] = reference.mean().pixels(), reference.views
-    return {**_times(times), "max_difference": _difference(pictures), "count": most - views[True]}
+        pictures[ends], views[ends] = reference.mean().pixels()[..., :3], reference.views
+    left_out = most - views[True]
+    quality = {"psnr": round(psnr(pictures[True], pictures[False]), 1)} if left_out else {}
+    return {**_times(times), "max_difference": _difference(pictures), "count": left_out, **quality}
 
 
 def _times(times: dict[bool, list[float]]) -> dict[str, float]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from dofview.bench.papers import verdicts
 from dofview.bench.pareto import front, quality
-from dofview.bench.plan import is_default, natural
+from dofview.bench.plan import OWN, is_default, natural
 from dofview.methods import METHODS
 
 SHORT = {"uniform_disc": "disc", "gaussian": "Gaussian"}
@@ -104,12 +104,18 @@ def lenses(records: list[dict]) -> Table:
 def all_rows(records: list[dict]) -> list[Table]:
     """Every case, a table a scene."""
     tables = []
-    for scene in dict.fromkeys(r["scene"] for r in records):
-        chosen = [r for r in records if r["scene"] == scene]
+    for title in dict.fromkeys(map(_circumstances, records)):
+        chosen = [r for r in records if _circumstances(r) == title]
         best = {id(r) for group in groups(chosen) for r in front(group)}
         rows = [_row(r, id(r) in best) for r in sorted(chosen, key=_order)]
-        tables.append(Table(f"All cases: {scene}", "", COLUMNS, rows))
+        tables.append(Table(f"All cases: {title}", "", COLUMNS, rows))
     return tables
+
+
+def _circumstances(record: dict) -> str:
+    """The scene, and how it is seen where that is not its own way."""
+    focus = "" if record.get("focus", OWN) == OWN else ", the farthest surface in focus"
+    return record["scene"] + focus + ("" if record.get("guard") is None else f", guard band of {record['guard']} px")
 
 
 COLUMNS = ["mean CoC px", "size", "lens", "method", "settings", "ms", "quartiles", "PSNR", "SSIM", "FLIP", "in focus",
