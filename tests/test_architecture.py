@@ -22,7 +22,7 @@ LAYERS = [re.findall(r"`(\w+)/?`", row) for row in re.findall(r"^\| (`.*?) \|", 
 LEVEL = {name: number for number, names in enumerate(LAYERS) for name in names}
 WINDOW_LIBRARIES = {"imgui_bundle", "imgui", "moderngl_window", "glfw", "pyglet"}
 HEAVY_LIBRARIES = {"trimesh", "matplotlib", "scipy", "skimage", "OpenEXR", "av", "flip_evaluator", "DracoPy"}
-GL_LAYERS = ("gl", "render", "methods", "pipeline", "viewer", "bench", "record", "stress")
+GL_LAYERS = ("gl", "render", "methods", "pipeline", "seen", "viewer", "bench", "record", "stress")
 
 
 def modules() -> Iterator[tuple[str, ast.Module]]:

@@ -17,6 +17,7 @@ from typing import TypeVar
 import numpy as np
 
 from dofview.errors import DofviewError
+from dofview.gl.compose import Part
 from dofview.gl.context import Gpu
 from dofview.gl.targets import Image
 from dofview.methods import method
@@ -30,8 +31,9 @@ from dofview.viewer.actions import ACTIONS, Action, Gesture, menu_bar, run_keys
 from dofview.viewer.dialogs import path_dialog
 from dofview.viewer.loading import Loader
 from dofview.viewer.measurement import Measurement, add_views
+from dofview.viewer.screen import Screen
 from dofview.viewer.store import Store
-from dofview.viewer.tool import Part, Placed, Tool
+from dofview.viewer.tool import Placed, Tool
 from dofview.viewer.tools import TOOLS
 
 MOST_MESSAGES = 200
@@ -63,7 +65,7 @@ class App:
         self.panels_focused = False
         self.asking_for_path = False
         self.quitting = False
-        self.when_drawn: Callable[[np.ndarray], None] | None = None
+        self.when_drawn: list[Callable[[np.ndarray], None]] = []
         """Called once by the window with what it shows, (h, w, 4) uint8."""
         self.message, self.said = "", deque[str](maxlen=MOST_MESSAGES)
         self.said_at = 0.0
@@ -73,6 +75,7 @@ class App:
         self.timing, self.passes = False, dict[str, float]()
         self.generation = 0
         self.part, self.placed = Part(), list[Placed]()
+        self.screen, self.text_px = Screen(), 15.0
         self.shown: Image | None = None
         self.accumulated = Measurement()
         self._figures: list[tuple[str, bool]] = []
@@ -116,6 +119,7 @@ class App:
                 self._accumulate()
             elif self._rendered != self.picture_key:
                 self._render()
+            self._develop()
             for tool in self.tools:
                 tool.update(self)
             self._rendered_well = self.settings
@@ -123,10 +127,7 @@ class App:
             self.report(str(error))
             self._rendered = self.picture_key
             self.settings = self._rendered_well
-        key = (self._rendered, self.settings.display)
-        if self.result is not None and self._displayed != key:
-            self.shown = show(self.gpu, self.result.image, self.settings.display, "shown")
-            self._displayed = key
+        self._develop()
 
     def figure(self, line: str, faint: bool = False) -> None:
         """Write a line over the picture in this frame."""
@@ -137,7 +138,7 @@ class App:
         first = method(self.settings.method).TITLE
         if self.milliseconds and self.settings.method != "accumulation":
             first += f"   {statistics.median(self.milliseconds[-9:]):.1f} ms"
-        lines = [(first, False), *self._figures]
+        lines = [(first, False), *dict(self._figures).items()]
         if self.settings.method == "accumulation":
             lines.append((self.accumulated.reference_text(), False))
         self._figures = []
@@ -205,6 +206,13 @@ class App:
             tool.scene_changed(self)
         notes = f", {len(scene.warnings)} notes" if scene.warnings else ""
         self.report(f"{spec}: {scene.triangle_count} triangles{notes}")
+
+    def _develop(self) -> None:
+        """Bring what is shown of the picture up to date; before the tools look at it, and after they changed how."""
+        key = (self._rendered, self.settings.display)
+        if self.result is not None and self._displayed != key:
+            self.shown = show(self.gpu, self.result.image, self.settings.display, "shown")
+            self._displayed = key
 
     def _render(self) -> None:
         self.gpu.ctx.finish()

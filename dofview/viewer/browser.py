@@ -10,13 +10,13 @@ from imgui_bundle import imgui
 from dofview.gl.targets import Image
 from dofview.viewer.actions import Action
 from dofview.viewer.inspect import Channel, Inspect, develop, extremes
-from dofview.viewer.tool import Placed, Rect, Tool
+from dofview.viewer.tool import Rect, Tool
 
 if TYPE_CHECKING:
     from dofview.viewer.app import App
 
 SHARED = ("frame/", "picture")
-OWN = ("shown", "compare/", "inspected", "loupe/", "heat legend", "focus band")
+OWN = ("shown", "compare/", "inspected", "loupe/", "seen/", "screen", "focus band", "matte", "film")
 """Images that belong to the viewer."""
 
 LIST_ROWS = 9
@@ -77,17 +77,15 @@ class Browser(Tool):
         if self._shown != (key, shown):
             self._shown = key, develop(app.gpu, image, self.inspect, "inspected")
 
-    def draw_picture(self, app: App, rect: Rect, draw_list: imgui.ImDrawList) -> bool:
-        image = self.images(app).get(self.name) if self.on else None
-        if image is None or self._shown is None:
-            return False
-        scale = min(rect.width / image.size[0], rect.height / image.size[1])
-        width, height = image.size[0] * scale, image.size[1] * scale
-        place = Rect(rect.left + 0.5 * (rect.width - width), rect.top + 0.5 * (rect.height - height), width, height,
-                     rect.part)  # fmt: skip
-        place.draw(draw_list, self._shown[1])
-        app.placed.append(Placed(self.name, image, place, self.inspect.layer))
-        return True
+    @property
+    def stamp(self) -> object:
+        """What the image shown depends on."""
+        return self._shown if self.on else None
+
+    def shown(self, app: App) -> Image | None:
+        """The image as it is shown in place of the picture; None while pictures are."""
+        there = self.on and self._shown is not None and self.name in self.images(app)
+        return self._shown[1] if there and self._shown else None
 
     def over_picture(self, app: App, rect: Rect, hovered: bool) -> bool:
         if self.on and self._shown is not None:

@@ -6,12 +6,12 @@ import math
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
-from pydantic import BaseModel, ConfigDict, Field
 
-from dofview.gl.passes import draw
 from dofview.gl.targets import Image
 from dofview.lens import depth_of_field, focal_px, hyperfocal_distance
 from dofview.methods import method
+from dofview.seen import overlays
+from dofview.seen.model import Band
 from dofview.viewer.actions import Action, Gesture
 from dofview.viewer.tool import Rect, Tool
 from dofview.viewer.widgets import edit
@@ -27,17 +27,6 @@ STEP = 1.04
 
 APERTURE_STEP = 2.0 ** (1.0 / 6.0)
 """A third of a stop."""
-
-
-class Band(BaseModel):
-    """What counts as in focus."""
-
-    model_config = ConfigDict(frozen=True, allow_inf_nan=False)
-
-    blur_px: float = Field(
-        default=0.5, ge=0.05, le=8.0, json_schema_extra={"unit": "px"},
-        description="Largest blur that still counts as sharp: radius of the circle of confusion, pixels.",
-    )  # fmt: skip
 
 
 class Focusing(Tool):
@@ -75,28 +64,25 @@ class Focusing(Tool):
             Gesture("Ctrl+wheel", "Move the focus nearer or farther."),
         )
 
+    @property
+    def overlay(self) -> Image | None:
+        """What is laid over pictures while it is shown."""
+        return self._overlay if self.shown else None
+
     def update(self, app: App) -> None:
         if not self.shown or app.result is None:
             return
         settings = app.settings
         frame = app.pipeline.frame(settings, guard=method(settings.method).GUARD_BAND)
-        depth = frame.pinhole().inverse_depth
-        overlay = app.gpu.targets.image("focus band", settings.image.size, dtype="f1", linear=True)
         wanted = (frame.geometry_key, settings.image, settings.lens, self.band)
-        if wanted != self._drawn or overlay is not self._overlay:
-            width, height = settings.image.size
-            draw(
-                app.gpu, "viewer/focus_band.frag", overlay, textures={"inverse_depth": depth},
-                blocks={"Lens": frame.lens_block, "Band": self.band},
-                values={"scale": (frame.inner_size[0] / width, frame.inner_size[1] / height), "guard": frame.guard},
-            )  # fmt: skip
-            self._drawn, self._overlay = wanted, overlay
+        if wanted != self._drawn or self._overlay is None or self._overlay not in app.gpu.targets:
+            self._overlay = overlays.in_focus(app.gpu, frame, settings.image.size, self.band, "focus band")
+            self._drawn = wanted
+        app.gpu.targets.touch(self._overlay)
 
     def over_picture(self, app: App, rect: Rect, hovered: bool) -> bool:
         io = imgui.get_io()
         if self.shown and self._overlay is not None:
-            for place in dict.fromkeys(placed.rect for placed in app.placed):
-                place.draw(imgui.get_window_draw_list(), self._overlay)
             for line in limits(app, self.band.blur_px):
                 app.figure(line)
         if hovered and imgui.is_mouse_clicked(imgui.MouseButton_.left):

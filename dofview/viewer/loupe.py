@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from imgui_bundle import imgui
 
+from dofview.gl.compose import Part
 from dofview.viewer.actions import SHIFT, Action, Gesture
 from dofview.viewer.inspect import texel
-from dofview.viewer.tool import Part, Placed, Rect, Tool
+from dofview.viewer.tool import Placed, Rect, Tool
 from dofview.viewer.truth import REFERENCE
 
 if TYPE_CHECKING:

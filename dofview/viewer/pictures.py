@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from dofview.errors import DofviewError
 from dofview.gl.targets import Image
 from dofview.render.display import show
+from dofview.seen import overlays
 from dofview.viewer.heat import Heat
 from dofview.viewer.tool import Tool
 from dofview.viewer.truth import REFERENCE, Truth
@@ -58,7 +59,7 @@ class Pictures(Tool):
         key = (self._state(app, name), how)
         if self._shown.get(name) != (key, shown):
             if heat.covers(name):
-                heat.draw(app, linear, app.tool(Truth).picture(app), shown)
+                overlays.error_map(app.gpu, linear, app.tool(Truth).picture(app), heat.settings, shown.name)
             else:
                 show(app.gpu, linear, app.settings.display, shown.name)
             self._shown[name] = key, shown
@@ -66,8 +67,9 @@ class Pictures(Tool):
 
     def keep(self, app: App, names: tuple[str, ...], also: str) -> None:
         """Forget all but `names` and one that may come back, and make the pool hold what `names` need in turn."""
-        self._linear = {name: kept for name, kept in self._linear.items() if name in (*names, also)}
-        self._shown = {name: kept for name, kept in self._shown.items() if name in (*names, also)}
+        wanted = (*names, also, app.settings.method)
+        self._linear = {name: kept for name, kept in self._linear.items() if name in wanted}
+        self._shown = {name: kept for name, kept in self._shown.items() if name in wanted}
         app.gpu.targets.keep_frames = 2 + len(names)
 
     def _render(self, app: App, name: str) -> None:

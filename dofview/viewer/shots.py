@@ -137,7 +137,7 @@ class Shots(Tool):
 def save_window(app: App) -> None:
     """Save the whole window under a new name once this frame is drawn, without the message of the last picture."""
     app.said_at = -math.inf
-    app.when_drawn = partial(_save_drawn, app, note(app.spec, app.settings))
+    app.when_drawn.append(partial(_save_drawn, app, note(app.spec, app.settings)))
 
 
 def _save_drawn(app: App, remark: str, pixels: np.ndarray) -> None:

@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from imgui_bundle import imgui
-from moderngl import LINEAR, NEAREST
+from moderngl import NEAREST
+
+from dofview.gl.compose import WHOLE, Part
 
 if TYPE_CHECKING:
     from imgui_bundle.imgui import ImDrawList, ImVec2
@@ -21,15 +23,6 @@ if TYPE_CHECKING:
     from dofview.viewer.app import App
 
 
-class Part(NamedTuple):
-    """The part of a picture that is seen: shares of its width and height, from its upper left."""
-
-    left: float = 0.0
-    top: float = 0.0
-    width: float = 1.0
-    height: float = 1.0
-
-
 class Rect(NamedTuple):
     """Where a picture is shown, in imgui's coordinates: left, top, width, height; and which part of it."""
 
@@ -37,7 +30,7 @@ class Rect(NamedTuple):
     top: float
     width: float
     height: float
-    part: Part = Part()
+    part: Part = WHOLE
 
     def share(self, at: ImVec2) -> tuple[float, float]:
         """A place on the screen as shares of the picture's width and height, from its upper left."""
@@ -54,16 +47,12 @@ class Rect(NamedTuple):
         return 0.0 <= at.x - self.left < self.width and 0.0 <= at.y - self.top < self.height
 
     def draw(self, draw_list: ImDrawList, image: Image) -> None:
-        """Show the part of an 8-bit image; its pixels stay sharp where they are enlarged."""
-        enlarged = self.width > 1.5 * self.part.width * image.size[0]
-        image.texture.filter = (NEAREST, NEAREST) if enlarged else (LINEAR, LINEAR)
-        left, top, width, height = self.part
+        """Show the whole of an 8-bit image, which is as large as this in pixels."""
+        image.texture.filter = (NEAREST, NEAREST)
         # OpenGL's first row is the lowest: v runs upwards.
         corner = (self.left + self.width, self.top + self.height)
         texture = imgui.ImTextureRef(image.texture.glo)
-        draw_list.add_image(
-            texture, (self.left, self.top), corner, (left, 1.0 - top), (left + width, 1.0 - top - height)
-        )
+        draw_list.add_image(texture, (self.left, self.top), corner, (0.0, 1.0), (1.0, 0.0))
 
 
 class Placed(NamedTuple):
@@ -106,9 +95,8 @@ class Tool:
     def update(self, app: App) -> None:
         """Work on the GPU, after the picture was brought up to date and before it is shown."""
 
-    def draw_picture(self, app: App, rect: Rect, draw_list: ImDrawList) -> bool:
-        """Show something in place of the picture and note it in `app.placed`; True when it did."""
-        return False
+    def seen(self, app: App, image: Image) -> None:
+        """Take note of what is seen in this frame, 8 bits."""
 
     def over_picture(self, app: App, rect: Rect, hovered: bool) -> bool:
         """Draw over the picture and take gestures; True keeps the gesture from the camera."""

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from dofview.scene import navigation
 from dofview.viewer.actions import Gesture
-from dofview.viewer.tool import Placed, Rect
+from dofview.viewer.tool import Rect
 
 if TYPE_CHECKING:
     from dofview.viewer.app import App
@@ -34,16 +34,20 @@ def draw(app: App) -> None:
     origin = imgui.get_cursor_screen_pos()
     available = imgui.get_content_region_avail()
     factor = imgui.get_io().display_framebuffer_scale
-    rect = Rect(origin.x, origin.y, max(available.x, 1.0), max(available.y, 1.0), app.part)
     app.resize((round(available.x * factor.x), round(available.y * factor.y)))
+    width, height = app.settings.image.size
+    # As large as the picture, not as the room: its pixels are the screen's.
+    rect = Rect(origin.x, origin.y, width / factor.x, height / factor.y, app.part)
     # Before the picture is handed to imgui: a resize replaces its texture.
     app.update()
     app.placed = []
-    draw_list = imgui.get_window_draw_list()
-    replaced = any(tool.draw_picture(app, rect, draw_list) for tool in app.tools)
-    if not replaced and app.shown is not None and app.result is not None:
-        rect.draw(draw_list, app.shown)
-        app.placed.append(Placed(app.settings.method, app.result.image, rect))
+    app.text_px = imgui.get_font_size() * factor.y
+    image = app.screen.image(app)
+    if image is not None:
+        rect.draw(imgui.get_window_draw_list(), image)
+        app.placed = app.screen.placed(app, rect)
+        for tool in app.tools:
+            tool.seen(app, image)
     imgui.invisible_button("canvas", (rect.width, rect.height), _BUTTONS)
     hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
     mouse = imgui.get_mouse_pos()

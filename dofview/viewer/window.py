@@ -156,16 +156,17 @@ def _draw(window: Window, app: App) -> None:
     ctx.viewport = (0, 0, width, height)
     ctx.clear(0.06, 0.06, 0.07)
     imgui.backends.opengl3_render_draw_data(imgui.get_draw_data())
-    if app.when_drawn is not None:
+    if app.when_drawn:
         _hand_over(app, (width, height))
     glfw.swap_buffers(window._window)
 
 
 def _hand_over(app: App, size: tuple[int, int]) -> None:
     """Give what the window shows to whom it was promised."""
-    take, app.when_drawn = app.when_drawn, None
+    promised, app.when_drawn = app.when_drawn, []
     width, height = size
     data = app.gpu.ctx.screen.read((0, 0, width, height), components=4)
     # The screen is no image of the pool, which would turn it the right way up.
-    if take is not None:
-        take(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1])
+    pixels = np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1]
+    for take in promised:
+        take(pixels)

@@ -6,16 +6,17 @@ import numpy as np
 from host import Context, Host, drive, press, until
 from imgui_bundle import imgui
 
+from dofview.gl.compose import Part
 from dofview.methods import METHODS
 from dofview.scene.camera import Camera
+from dofview.seen.model import Arrangement, Difference
 from dofview.viewer.app import App
 from dofview.viewer.browser import Browser, groups
-from dofview.viewer.compare import Compare, Mode
-from dofview.viewer.heat import Difference, Heat
+from dofview.viewer.compare import Compare
+from dofview.viewer.heat import Heat
 from dofview.viewer.inspect import Channel
 from dofview.viewer.loupe import Loupe
 from dofview.viewer.pictures import Pictures
-from dofview.viewer.tool import Part
 from dofview.viewer.truth import Truth
 
 kept: dict[str, np.ndarray] = {}
@@ -61,7 +62,7 @@ def wipe(context: Context, app: App, host: Host) -> None:
     compare = app.tool(Compare)
     compare.other = "pinhole"
     press(context, "w")
-    assert compare.mode is Mode.WIPE
+    assert compare.mode is Arrangement.WIPE
     rests(context, app, "a wipe")
     assert [placed.label for placed in app.placed] == ["mipmap", "pinhole"]
     other = read(context, host, "compare/pinhole")
@@ -84,7 +85,7 @@ def wipe(context: Context, app: App, host: Host) -> None:
     assert app.settings.method == before and compare.other == "mipmap"
     press(context, "u")
     press(context, "w")
-    assert compare.mode is Mode.ONE
+    assert compare.mode is Arrangement.ONE
 
 
 def flip(context: Context, app: App) -> None:
@@ -114,7 +115,7 @@ def error_map(context: Context, app: App, host: Host) -> None:
         heat.settings = heat.settings.model_copy(update={"difference": difference})
         context.yield_(2)
         maps[difference] = read(context, host, "compare/mipmap shown")
-        legend = read(context, host, "heat legend")
+        legend = read(context, host, "seen/scale")
         assert np.ptp(legend[0].sum(axis=1)) > 200, "the legend runs from one end to the other"
     for a in Difference:
         assert maps[a].std() > 0.5, a
@@ -210,7 +211,7 @@ def browser(context: Context, app: App, host: Host) -> None:
         for image in images:
             tool.choose(image)
             context.yield_(2)
-            assert app.placed[0].label == image and tool.inspect.high > tool.inspect.low
+            assert app.placed[0].label == image and tool.inspect.high > tool.inspect.low, (image, name, tool.inspect)
     rests(context, app, "the browser")
     app.settings = app.settings.with_(method="mipmap")
     until(context, lambda: app.settings.method == "mipmap" and not app.busy, "back")
