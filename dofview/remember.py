@@ -13,6 +13,7 @@ import dofview
 from dofview.errors import InputError, SettingsError
 from dofview.export import NOTE, write_whole
 from dofview.methods import METHODS
+from dofview.seen.model import Seen
 from dofview.settings import Settings, checked, explain
 
 MOST_BYTES = 1 << 20
@@ -21,15 +22,17 @@ PRESET_PARTS = ("lens", "method", "params", "image", "display", "background_line
 
 
 class Remembered(NamedTuple):
-    """What a picture says of itself: the scene it shows and the settings it was made with."""
+    """What a picture says of itself: the scene it shows, the settings it was made with, and what of them is seen."""
 
     spec: str
     settings: Settings
+    seen: Seen | None = None
 
 
-def note(spec: str, settings: Settings) -> str:
+def note(spec: str, settings: Settings, seen: Seen | None = None) -> str:
     """The text that `read_note` understands."""
-    return json.dumps({NOTE: dofview.__version__, "scene": spec, "settings": settings.model_dump(mode="json")})
+    values = {NOTE: dofview.__version__, "scene": spec, "settings": settings.model_dump(mode="json")}
+    return json.dumps(values | ({} if seen is None else {"seen": seen.model_dump(mode="json")}))
 
 
 def read_note(path: Path) -> Remembered:
@@ -40,7 +43,8 @@ def read_note(path: Path) -> Remembered:
         spec, values = str(found["scene"]), found["settings"]
     except (ValueError, RecursionError, KeyError, TypeError) as error:
         raise InputError(f"{path}: its settings cannot be read; accepted: a picture saved by dofview") from error
-    return Remembered(spec, checked(Settings, values, str(path)))
+    seen = checked(Seen, found["seen"], f"{path}: seen") if "seen" in found else None
+    return Remembered(spec, checked(Settings, values, str(path)), seen)
 
 
 def _note_of(path: Path) -> str:

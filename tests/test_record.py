@@ -25,6 +25,8 @@ from dofview.record.paths import keyframes, rack_focus, read_keyframes, still, t
 from dofview.record.run import Encoder, frame_count, record
 from dofview.record.writers import check, writer
 from dofview.scene.camera import Camera
+from dofview.seen import headless
+from dofview.seen.model import Arrangement, Seen
 from dofview.settings import ImageSettings, Settings
 
 SETTINGS = Settings(
@@ -93,6 +95,22 @@ def test_a_film_shows_what_was_rendered_and_twice_the_same(gpu: Gpu, tmp_path, s
     pipeline.release()
     assert digests[0] == digests[1] or suffix == ".webm", "the same bytes from two runs"
     assert not list(tmp_path.glob("*.part.*"))
+
+
+def test_a_film_of_what_is_seen_holds_the_comparison_and_twice_the_same(gpu: Gpu, tmp_path):
+    """A wipe of two methods under a map of what is in focus, frame by frame as it is made without a film."""
+    pipeline = Pipeline(gpu, three_planes())
+    values = Seen(arrangement=Arrangement.WIPE, other="mipmap", split=0.4, in_focus=True, text_px=8.0)
+    for name in ("one", "two"):
+        record(pipeline, turntable(SETTINGS, 3), 3, tmp_path / name / "%d.png", 12.0, seen=values)
+    for number in range(3):
+        first, second = (np.asarray(Image.open(tmp_path / name / f"{number}.png")) for name in ("one", "two"))
+        wanted = headless.picture(pipeline, turntable(SETTINGS, 3)(number), values).pixels()[..., :3]
+        assert (first == second).all() and (first == wanted).all()
+        assert (first != pipeline.shown(pipeline.render(SETTINGS), SETTINGS)).mean() > 0.1
+    record(pipeline, still(SETTINGS), 1, tmp_path / "linear" / "%d.exr", 12.0, seen=values)
+    pipeline.release()
+    assert (tmp_path / "linear" / "0.exr").stat().st_size > 1000
 
 
 def test_a_sequence_and_a_gif(gpu: Gpu, tmp_path):

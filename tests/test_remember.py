@@ -11,14 +11,20 @@ from PIL import Image
 from dofview import export
 from dofview.cli import main
 from dofview.errors import InputError, SettingsError
+from dofview.gl.compose import Part
 from dofview.lens import Distribution, Lens
 from dofview.remember import note, read_note, read_preset, write_preset
+from dofview.seen.model import Arrangement, Seen
 from dofview.settings import ImageSettings, Settings
 
 ODD = Settings(
     lens=Lens(radius=0.123, focus_distance=math.inf, distribution=Distribution.POLYGON, blades=7, rotation_deg=-12.5),
     method="mipmap", image=ImageSettings(size=(33, 21), scale=1.5, guard_px=3), background_linear=(0.1, 0.2, 0.3),
 ).with_params(delta=1.25)  # fmt: skip
+COMPARED = Seen(
+    arrangement=Arrangement.WIPE, other="pinhole", split=0.3, part=Part(0.1, 0.2, 0.3, 0.3), error_map=True,
+    in_focus=True,
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("suffix", [".png", ".exr"])
@@ -26,7 +32,9 @@ def test_a_picture_remembers_its_settings(tmp_path, suffix):
     path = tmp_path / f"shot{suffix}"
     pixels = np.random.default_rng(0).random((21, 33, 3), dtype=np.float32)
     export.save(path, pixels, note("scène.glb", ODD))
-    assert read_note(path) == ("scène.glb", ODD)
+    assert read_note(path) == ("scène.glb", ODD, None)
+    export.save(path, pixels, note("scène.glb", ODD, COMPARED))
+    assert read_note(path) == ("scène.glb", ODD, COMPARED)
 
 
 def test_the_parts_of_an_exr_are_all_there(tmp_path):

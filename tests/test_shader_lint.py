@@ -20,6 +20,8 @@ from dofview.methods import METHODS, method
 from dofview.pipeline import Pipeline
 from dofview.render.display import Display, show
 from dofview.render.environment import STUDIO, Lighting
+from dofview.seen import headless
+from dofview.seen.model import Arrangement, Seen
 from dofview.settings import ImageSettings, Settings
 
 STAGES = {".vert": "vert", ".frag": "frag", ".geom": "geom"}
@@ -66,6 +68,9 @@ def compiled(session_gpu: Gpu) -> dict[tuple[str, str], str]:
         pipeline.render(Settings(method="splatting", lens=LENS, image=ImageSettings(size=(48, 36))))
         pipeline.render(settings.with_(light=Lighting(environment=STUDIO)))
         show(fresh, result.image, Display(), "shown")
+        values = Seen(arrangement=Arrangement.GRID, error_map=True, in_focus=True)
+        for linear in (False, True):
+            headless.picture(pipeline, settings, values, linear=linear)
         for analysis in Analysis:
             blur(fresh, pyramid(fresh, "levels", (64, 48), 3), analysis)
         pipeline.release()

@@ -12,6 +12,7 @@ from cyclopts.exceptions import UnknownOptionError
 
 import dofview
 from dofview.cli import flags
+from dofview.cli.beside import Beside
 from dofview.cli.flags import Given
 from dofview.cli.runs import Comparing, Timing
 from dofview.errors import InputError
@@ -19,6 +20,7 @@ from dofview.methods import METHODS, method
 
 OPENS_WITH = "demo:foreground"
 PACE = Group("Timing", sort_key=4)
+BESIDE = Group("Comparison", sort_key=5)
 
 Spec = Annotated[str, Parameter(name="SCENE", help="A .gltf, .glb, .obj, .ply, .stl or .off file, or demo:NAME.")]
 View = Annotated[
@@ -52,8 +54,9 @@ def make_app(chosen: str | None) -> App:
     )  # fmt: skip
     picture = flags.of_settings(chosen)
     app.default(flags.with_flags(view, picture))
-    app.command(flags.with_flags(render, [*flags.of_model("timing", Timing, PACE), *picture]))
-    app.command(flags.with_flags(record, picture))
+    beside = flags.of_model("beside", Beside, BESIDE)
+    app.command(flags.with_flags(render, [*flags.of_model("timing", Timing, PACE), *picture, *beside]))
+    app.command(flags.with_flags(record, [*picture, *beside]))
     app.command(flags.with_flags(compare, [*flags.of_model("comparing", Comparing, PACE), *flags.of_settings(None)]))
     for command in (methods, info, doctor, bench, pick, stress):
         app.command(command)

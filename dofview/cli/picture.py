@@ -9,18 +9,23 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
+
 from dofview import export
 from dofview.bench.timing import timed
+from dofview.cli.beside import seen_for
 from dofview.cli.chosen import applied, settings_for
 from dofview.cli.flags import Given
 from dofview.cli.runs import Timing
 from dofview.errors import InputError
 from dofview.gl.context import create_headless
-from dofview.pipeline import Pipeline
+from dofview.pipeline import Pipeline, Result
 from dofview.remember import note, read_note, read_preset
 from dofview.render.display import Display
 from dofview.scene.load import load
 from dofview.scene.model import Scene
+from dofview.seen.headless import picture as headless_picture
+from dofview.seen.model import Seen
 from dofview.settings import Settings, checked
 
 MOST_NOTES = 5
@@ -38,7 +43,8 @@ def render_to(
     if spec is None:
         raise InputError("render needs a SCENE, or --like PICTURE with one saved by dofview; see dofview render --help")
     base = _with_preset(remembered.settings if remembered else Settings(), preset)
-    applied(base, given, view=view, method=method)
+    size = applied(base, given, view=view, method=method).image.size
+    seen = seen_for(given, size, remembered.seen if remembered else None)
     export.check_writable(output)
     scene = load(spec)
     if remembered is not None:
@@ -48,11 +54,7 @@ def render_to(
     tell_warnings(scene)
     with headless(scene) as pipeline:
         result, milliseconds = timed(pipeline, settings, timing.frames)
-        if output.suffix.lower() == ".png" and settings.display != Display():
-            shown, remark = pipeline.shown(result, settings), note(spec, settings)
-            export.write_whole(output, lambda part: export.write_png8(part, shown, remark))
-        else:
-            export.save(output, result.pixels(), note(spec, settings))
+        _save(pipeline, result, settings, seen, output, note(spec, settings, seen))
         facts = {
             "ms": round(statistics.median(milliseconds), 3),
             "method": settings.method,
@@ -70,6 +72,22 @@ def render_to(
             "output": str(output),
         }
     print(jsonlib.dumps(facts))
+
+
+def _save(
+    pipeline: Pipeline, result: Result, settings: Settings, seen: Seen | None, output: Path, remark: str
+) -> None:  # fmt: skip
+    """Write the picture, or what is seen of it: as a screen shows it into a PNG, else linear light."""
+    if output.suffix.lower() == ".png" and (seen is not None or settings.display != Display()):
+        shown = pipeline.shown(result, settings) if seen is None else _seen(pipeline, settings, seen, linear=False)
+        export.write_whole(output, lambda part: export.write_png8(part, shown, remark))
+    else:
+        linear = result.pixels() if seen is None else _seen(pipeline, settings, seen, linear=True)
+        export.save(output, linear, remark)
+
+
+def _seen(pipeline: Pipeline, settings: Settings, seen: Seen, linear: bool) -> np.ndarray:
+    return np.ascontiguousarray(headless_picture(pipeline, settings, seen, linear=linear).pixels()[..., :3])
 
 
 def _with_preset(settings: Settings, preset: Path | None) -> Settings:

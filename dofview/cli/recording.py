@@ -12,6 +12,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
+from dofview.cli.beside import seen_for
 from dofview.cli.chosen import applied, settings_for
 from dofview.cli.flags import Given
 from dofview.cli.picture import headless, tell_warnings
@@ -48,7 +49,7 @@ def record_to(
     looks = _trace(trace, fps) if kind == PathKind.GAZE else None
     if looks is not None and seconds is None:
         frames = looks[0].ticks(looks[1])
-    applied(Settings(), given, view=view, method=method)
+    seen = seen_for(given, applied(Settings(), given, view=view, method=method).image.size)
     check(output)
     scene = load(spec)
     settings = settings_for(scene, spec, given, view=view, method=method, camera=camera)
@@ -59,7 +60,7 @@ def record_to(
             path = gaze(settings, looks[0], depth, looks[1])
         else:
             path = _path(PathKind(kind), settings, frames, focus_from, focus_to, keys)
-        record(pipeline, path, frames, output, fps, advance)
+        record(pipeline, path, frames, output, fps, advance, seen=seen)
         renderer = pipeline.gpu.renderer
     facts = {"output": str(output), "frames": frames, "fps": fps, "size": list(settings.image.size),
              "method": settings.method, "path": kind, "renderer": renderer}  # fmt: skip

@@ -67,9 +67,9 @@ def compose(gpu: Gpu, layers: Iterable[Layer], size: tuple[int, int], name: str,
     return canvas
 
 
-def fitted(gpu: Gpu, image: Image, size: tuple[int, int], name: str) -> Image:
-    """Return the whole of an 8-bit `image` as large as it fits into `size`, in the middle, in the image `name`."""
-    return compose(gpu, [Layer(image, fit(image.size, Box(0, 0, *size)))], size, name)
+def fitted(gpu: Gpu, image: Image, size: tuple[int, int], name: str, *, linear: bool = False) -> Image:
+    """Return the whole of `image` as large as it fits into `size`, in the middle, in the image `name`."""
+    return compose(gpu, [Layer(image, fit(image.size, Box(0, 0, *size)))], size, name, linear=linear)
 
 
 def fit(size: tuple[int, int], room: Box) -> Box:

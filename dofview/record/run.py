@@ -13,6 +13,9 @@ from dofview.errors import SettingsError
 from dofview.pipeline import Pipeline
 from dofview.record.paths import Path_
 from dofview.record.writers import Writer, writer
+from dofview.seen import headless
+from dofview.seen.model import Seen
+from dofview.settings import Settings
 
 QUEUE_FRAMES = 8
 """Frames that may wait for the encoder; a slow one then slows the renderer, not the memory."""
@@ -71,9 +74,11 @@ def frame_count(seconds: float, fps: float) -> int:
 
 def record(
     pipeline: Pipeline, path: Path_, frames: int, output: Path, fps: float,
-    on_frame: Callable[[int], None] = lambda frame: None,
+    on_frame: Callable[[int], None] = lambda frame: None, seen: Seen | None = None,
 ) -> None:  # fmt: skip
-    """Render `frames` frames of `path` into the film `output`. Broken off, what was written stays playable.
+    """Render `frames` frames of `path` into the film `output`: pictures, or what is `seen` of them.
+
+    Broken off, what was written stays playable.
 
     A film shows what the screen does, exposure and tone curve included; EXR pictures are linear light.
     """
@@ -83,10 +88,16 @@ def record(
     try:
         for frame in range(frames):
             settings = path(frame)
-            result = pipeline.render(settings)
-            encoder.add(result.pixels() if linear else pipeline.shown(result, settings))
+            encoder.add(_pixels(pipeline, settings, seen, linear))
             on_frame(frame + 1)
     except BaseException:
         encoder.abandon()
         raise
     encoder.close()
+
+
+def _pixels(pipeline: Pipeline, settings: Settings, seen: Seen | None, linear: bool) -> np.ndarray:
+    if seen is not None:
+        return np.ascontiguousarray(headless.picture(pipeline, settings, seen, linear=linear).pixels()[..., :3])
+    result = pipeline.render(settings)
+    return result.pixels() if linear else pipeline.shown(result, settings)

@@ -47,7 +47,7 @@ def _next_method(app: App, step: int) -> None:
 
 log = logging.getLogger("dofview.viewer")
 MENUS = ("File", "Edit", "View", "Camera", "Lens", "Focus", "Gaze", "Compare", "Interface", "Help")
-CTRL, SHIFT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_shift)
+CTRL, SHIFT, ALT = int(imgui.Key.mod_ctrl), int(imgui.Key.mod_shift), int(imgui.Key.mod_alt)
 
 ACTIONS: tuple[Action, ...] = (
     Action("Open path…", CTRL | SHIFT | int(imgui.Key.o), "Ctrl+Shift+O",
@@ -63,7 +63,7 @@ ACTIONS: tuple[Action, ...] = (
 )  # fmt: skip
 
 
-MODIFIERS = CTRL | SHIFT | int(imgui.Key.mod_alt) | int(imgui.Key.mod_super)
+MODIFIERS = CTRL | SHIFT | ALT | int(imgui.Key.mod_super)
 
 
 def run_keys(app: App) -> None:

@@ -67,6 +67,9 @@ class App:
         self.quitting = False
         self.when_drawn: list[Callable[[np.ndarray], None]] = []
         """Called once by the window with what it shows, (h, w, 4) uint8."""
+        self.window_size = settings.image.size
+        self.clock: Callable[[], float] = time.monotonic
+        """The time that what moves by itself goes by, seconds; a film has its own."""
         self.message, self.said = "", deque[str](maxlen=MOST_MESSAGES)
         self.said_at = 0.0
         self.milliseconds: list[float] = []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
@@ -47,6 +46,7 @@ class Cameras(Tool):
         self._flying = False
         self._glide: tuple[Camera, Camera, float] | None = None
         self._set: Camera | None = None
+        self._flown_at = 0.0
 
     def actions(self) -> tuple[Action, ...]:
         return (
@@ -77,7 +77,7 @@ class Cameras(Tool):
         if app.interface.reduced_motion:
             app.settings = app.settings.with_(camera=camera)
         else:
-            self._glide, self._set = (app.settings.camera, camera, time.monotonic()), app.settings.camera
+            self._glide, self._set = (app.settings.camera, camera, app.clock()), app.settings.camera
 
     def look_at(self, app: App, point: tuple[float, float]) -> None:
         """Make what is at `point` of the picture the pivot."""
@@ -91,7 +91,7 @@ class Cameras(Tool):
         if self._glide is None:
             return
         start, end, began = self._glide
-        share = min((time.monotonic() - began) / GLIDE_S, 1.0)
+        share = min((app.clock() - began) / GLIDE_S, 1.0)
         if share >= 1.0 or app.settings.camera != self._set:
             self._glide = None
         if app.settings.camera == self._set:
@@ -105,11 +105,13 @@ class Cameras(Tool):
             self.look_at(app, rect.share(mouse))
         if hovered and imgui.is_mouse_clicked(imgui.MouseButton_.right):
             self._flying = True
+            self._flown_at = app.clock()
         self._flying &= imgui.is_mouse_down(imgui.MouseButton_.right)
         if self._flying:
-            camera = self._flown(app.settings.camera, rect.height)
+            camera = self._flown(app.settings.camera, rect.height, app.clock() - self._flown_at)
             if camera != app.settings.camera:
                 app.settings = app.settings.with_(camera=camera)
+            self._flown_at = app.clock()
         return self._flying
 
     def busy(self, app: App) -> bool:
@@ -142,7 +144,7 @@ class Cameras(Tool):
         """Take the view of a camera of the file."""
         self.go(app, opening(app.scene, "", app.settings, str(number)).camera)
 
-    def _flown(self, camera: Camera, height: float) -> Camera:
+    def _flown(self, camera: Camera, height: float, passed_s: float) -> Camera:
         io = imgui.get_io()
         if io.mouse_wheel:
             self.speed = min(max(self.speed * 1.2**io.mouse_wheel, 0.01), 100.0)
@@ -153,7 +155,7 @@ class Cameras(Tool):
         if moving.any():
             fast = 4.0 if io.key_shift else 1.0
             camera = navigation.fly(
-                camera, *moving * (self.speed * fast * camera.distance * min(io.delta_time, LONGEST_STEP_S))
+                camera, *moving * (self.speed * fast * camera.distance * min(max(passed_s, 0.0), LONGEST_STEP_S))
             )
         return camera
 

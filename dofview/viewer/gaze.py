@@ -125,7 +125,7 @@ class Gaze(Tool):
         elif self._rows is not None or self._key(app) != self._seen or not self._pull.settled:
             self._follow(app)
         else:
-            self._last = time.monotonic()
+            self._last = app.clock()
 
     def over_picture(self, app: App, rect: Rect, hovered: bool) -> bool:
         point = rect.share(imgui.get_mouse_pos())
@@ -164,7 +164,7 @@ class Gaze(Tool):
         self.switch(app, False)
 
     def _begin(self, app: App, pull: Pull) -> None:
-        self._pull, self._tick, self._last = pull, 0, time.monotonic()
+        self._pull, self._tick, self._last = pull, 0, app.clock()
         set_focus(app, pull.distance)
 
     def _freeze(self) -> None:
@@ -177,8 +177,8 @@ class Gaze(Tool):
 
     def _follow(self, app: App) -> None:
         """As many steps as time has passed for."""
-        now, rate = time.monotonic(), self.settings.rate_hz
-        due = int((now - self._last) * rate)
+        now, rate = app.clock(), self.settings.rate_hz
+        due = int((now - self._last) * rate + 1e-6)
         if due == 0:
             return
         self._seen = self._key(app)
@@ -189,15 +189,21 @@ class Gaze(Tool):
             self._step(app, self._mouse.look, how)
 
     def _play(self, app: App) -> None:
-        """One step, when it is time for it; a slow machine shows every step later."""
+        """One step, when it is time for it, which a slow machine shows later; all that are due, when a film has its own
+        time."""
         assert self.trace is not None
-        if self._tick >= self.trace.ticks(self.settings):
-            self.on = self._replaying = False
-            app.report(f"replayed {self._tick} steps of gaze")
-        elif time.monotonic() >= self._last:
-            self._last = max(self._last + 1.0 / self.settings.rate_hz, time.monotonic() - 1.0 / self.settings.rate_hz)
+        period, ticks = 1.0 / self.settings.rate_hz, self.trace.ticks(self.settings)
+        filmed = app.clock != time.monotonic
+        while self._tick < ticks and app.clock() >= self._last - 1e-9:
+            self._last += period
             self._step(app, self.trace.at(self._tick / self.settings.rate_hz), self.settings)
             self.pulls.append(self._pull)
+            if not filmed:
+                self._last = max(self._last, app.clock() - period)
+                return
+        if self._tick >= ticks:
+            self.on = self._replaying = False
+            app.report(f"replayed {self._tick} steps of gaze")
 
     def _step(self, app: App, look: Look, how: GazeSettings) -> None:
         if self._rows is not None:

@@ -9,7 +9,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from dofview.gl.compose import Part
-from dofview.viewer.actions import SHIFT, Action, Gesture
+from dofview.viewer.actions import ALT, SHIFT, Action, Gesture
 from dofview.viewer.inspect import texel
 from dofview.viewer.tool import Placed, Rect, Tool
 from dofview.viewer.truth import REFERENCE
@@ -24,7 +24,6 @@ MOST_PX = 64.0
 PIXEL_LEVEL_PX = 16.0
 VALUES_FROM_PX = 8.0
 PAN_SHARE = 0.1
-ALT = int(imgui.Key.mod_alt)
 
 
 class Loupe(Tool):

@@ -13,11 +13,10 @@ from imgui_bundle import imgui
 
 from dofview import export
 from dofview.errors import DofviewError, InputError
-from dofview.remember import note, read_note, read_preset, write_preset
+from dofview.remember import Remembered, note, read_note, read_preset, write_preset
 from dofview.scene.load import DEMO
-from dofview.settings import Settings
-from dofview.viewer import files
-from dofview.viewer.actions import CTRL, SHIFT, Action
+from dofview.viewer import files, screen
+from dofview.viewer.actions import ALT, CTRL, SHIFT, Action
 from dofview.viewer.matte import Matte
 from dofview.viewer.tool import Tool, Work
 from dofview.viewer.truth import REFERENCE
@@ -36,13 +35,16 @@ class Shots(Tool):
     def __init__(self) -> None:
         self.transparent = False
         self._matte: Matte | None = None
-        self._pending: Settings | None = None
+        self._pending: Remembered | None = None
 
     def actions(self) -> tuple[Action, ...]:
         s = int(imgui.Key.s)
         return (
             Action("Save picture", CTRL | s, "Ctrl+S", "Save the picture as PNG, without the interface.",
                    self.save_picture, "File"),
+            Action("Save what is seen", CTRL | ALT | s, "Ctrl+Alt+S",
+                   "Save the comparison, error map, overlay and zoom as they are seen, without the panels, as PNG.",
+                   save_seen, "File"),
             Action("Save window", int(imgui.Key.f12), "F12",
                    "Save what the window shows as PNG, the interface included.", save_window, "File"),
             Action("Save EXR", CTRL | int(imgui.Key.e), "Ctrl+E",
@@ -62,7 +64,7 @@ class Shots(Tool):
             remembered = read_note(path)
         except InputError:
             return False
-        self._pending = remembered.settings
+        self._pending = remembered
         if remembered.spec == app.spec:
             self.scene_changed(app)
         else:
@@ -70,9 +72,13 @@ class Shots(Tool):
         return True
 
     def scene_changed(self, app: App) -> None:
-        if self._pending is not None:
-            image = self._pending.image.model_copy(update={"size": app.settings.image.size})
-            app.settings, self._pending = self._pending.with_(image=image), None
+        if self._pending is None:
+            return
+        settings, seen, self._pending = self._pending.settings, self._pending.seen, None
+        image = settings.image.model_copy(update={"size": app.settings.image.size})
+        app.settings = settings.with_(image=image)
+        if seen is not None:
+            screen.take(app, seen)
 
     def update(self, app: App) -> None:
         if self._pending is not None and not app.loader.spec:
@@ -98,6 +104,10 @@ class Shots(Tool):
         if imgui.button("PNG##save"):
             self.save_picture(app)
         _hint("Ctrl+S: the picture with its settings inside; dropping it on the window brings them back.")
+        imgui.same_line()
+        if imgui.button("Seen##save"):
+            save_seen(app)
+        _hint("Ctrl+Alt+S: wipe, grid, error map, overlay and zoom as they are seen; dropping it brings them back.")
         imgui.same_line()
         if imgui.button("Window##save"):
             save_window(app)
@@ -134,10 +144,23 @@ class Shots(Tool):
         self._matte = None
 
 
+def save_seen(app: App) -> None:
+    """Save what is seen without the interface under a new name, with the settings and the comparison inside."""
+    image = app.screen.image(app)
+    if image is None:
+        return
+    try:
+        remark = note(app.spec, app.settings, screen.seen_of(app))
+        path = files.save_png(image.pixels()[..., :3], files.unused_name(".png", "dofview-seen"), remark)
+        app.report(f"saved {path}")
+    except DofviewError as error:
+        app.report(str(error))
+
+
 def save_window(app: App) -> None:
     """Save the whole window under a new name once this frame is drawn, without the message of the last picture."""
     app.said_at = -math.inf
-    app.when_drawn.append(partial(_save_drawn, app, note(app.spec, app.settings)))
+    app.when_drawn.append(partial(_save_drawn, app, note(app.spec, app.settings, screen.seen_of(app))))
 
 
 def _save_drawn(app: App, remark: str, pixels: np.ndarray) -> None:

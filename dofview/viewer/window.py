@@ -145,12 +145,12 @@ def _input_waits() -> bool:
 
 def _draw(window: Window, app: App) -> None:
     app.content_scale = max(glfw.get_window_content_scale(window._window)[0], 0.5)
+    app.window_size = width, height = glfw.get_framebuffer_size(window._window)
     imgui.backends.opengl3_new_frame()
     imgui.backends.glfw_new_frame()
     imgui.new_frame()
     app.gui()
     imgui.render()
-    width, height = glfw.get_framebuffer_size(window._window)
     ctx = app.gpu.ctx
     ctx.screen.use()
     ctx.viewport = (0, 0, width, height)

@@ -9,14 +9,17 @@ from imgui_bundle import imgui
 from dofview.gl.compose import Part
 from dofview.methods import METHODS
 from dofview.scene.camera import Camera
+from dofview.seen.headless import picture
 from dofview.seen.model import Arrangement, Difference
 from dofview.viewer.app import App
 from dofview.viewer.browser import Browser, groups
 from dofview.viewer.compare import Compare
+from dofview.viewer.focusing import Focusing
 from dofview.viewer.heat import Heat
 from dofview.viewer.inspect import Channel
 from dofview.viewer.loupe import Loupe
 from dofview.viewer.pictures import Pictures
+from dofview.viewer.screen import seen_of
 from dofview.viewer.truth import Truth
 
 kept: dict[str, np.ndarray] = {}
@@ -55,6 +58,7 @@ def use(context: Context, app: App, host: Host) -> None:
     error_map(context, app, host)
     grid(context, app, host)
     loupe(context, app, host)
+    as_without_a_window(context, app, host)
     browser(context, app, host)
 
 
@@ -187,6 +191,26 @@ def loupe(context: Context, app: App, host: Host) -> None:
     press(context, "l")
     assert app.part == Part()
     press(context, "w")
+
+
+def as_without_a_window(context: Context, app: App, host: Host) -> None:
+    """Wipe, overlay, zoom and grid: the window's image is the one made without it, byte for byte."""
+    compare, focusing = app.tool(Compare), app.tool(Focusing)
+    compare.other, compare.split, focusing.shown = "pinhole", 0.3, True
+    for mode in (Arrangement.WIPE, Arrangement.ONE, Arrangement.WIPE):
+        compare.mode = mode
+        rests(context, app, mode)
+        found: dict[str, np.ndarray] = {}
+
+        def both(app: App, found: dict[str, np.ndarray] = found) -> None:
+            found["window"] = app.screen.image(app).pixels()
+            found["without"] = picture(app.pipeline, app.settings, seen_of(app)).pixels()
+
+        host.inside(context, both)
+        assert (found["window"] == found["without"]).all(), mode
+        app.part = Part(0.2, 0.3, 0.4, 0.4)
+    app.part, focusing.shown, compare.mode = Part(), False, Arrangement.ONE
+    rests(context, app, "one picture again")
 
 
 def app_inverse_depth(context: Context, app: App, host: Host, share: tuple[float, float]) -> float:

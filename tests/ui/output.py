@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import sys
+import time
 from pathlib import Path
 
 import av
@@ -13,11 +14,17 @@ import OpenEXR
 from host import Context, Host, drive, press, until
 from PIL import Image
 
+from dofview.gl.compose import Part
 from dofview.metrics import srgb_decode, srgb_encode
 from dofview.remember import read_note, read_preset
+from dofview.seen.model import Arrangement
 from dofview.settings import Settings
 from dofview.viewer.app import App
-from dofview.viewer.output import KEYFRAMES, KINDS, Output
+from dofview.viewer.compare import Compare
+from dofview.viewer.filming import Shows
+from dofview.viewer.focusing import Focusing
+from dofview.viewer.output import KEYFRAMES, KINDS, LIVE, Output
+from dofview.viewer.screen import seen_of
 from dofview.viewer.shots import Shots
 
 
@@ -30,6 +37,7 @@ def use(context: Context, app: App, host: Host) -> None:
     transparent(context, app, folder)
     assert app.settings == before
     films(context, app, folder)
+    what_is_seen(context, app, folder)
 
 
 def pictures(context: Context, app: App, folder: Path) -> None:
@@ -134,6 +142,46 @@ def films(context: Context, app: App, folder: Path) -> None:
     context.yield_(2)
     assert not output.recording and "stopped after" in app.message
     app.settings = before
+    context.yield_(2)
+
+
+def what_is_seen(context: Context, app: App, folder: Path) -> None:
+    """A film and a picture hold wipe, overlay and zoom; the picture brings them back."""
+    before, output, compare = app.settings, app.tool(Output), app.tool(Compare)
+    app.settings = before.with_(method="mipmap")
+    compare.mode, compare.other, compare.split, app.tool(Focusing).shown = Arrangement.WIPE, "pinhole", 0.4, True
+    app.part = Part(0.1, 0.1, 0.8, 0.8)
+    until(context, lambda: not app.busy, "a wipe")
+    context.yield_(3)
+    output.path, output.kind, output.fps, output.shows = LIVE, KINDS.index("/%05d.png"), 10, Shows.SEEN
+    clocks = []
+    output.toggle(app)
+    HOST[0].after = lambda app: clocks.append(app.clock())
+    (film,) = (path for path in folder.glob("dofview-film-*") if not any(path.iterdir()))
+    until(context, lambda: len(list(film.glob("*.png"))) >= 3, "three frames")
+    HOST[0].after = lambda app: None
+    output.toggle(app)
+    assert np.allclose(np.diff(sorted(set(clocks))), 0.1), "time is frame / fps"
+    assert app.clock() - clocks[-1] < 60.0 and app.clock == time.monotonic
+    press(context, "s", "ctrl", "alt")
+    (shot,) = folder.glob("dofview-seen-*.png")
+    seen = np.asarray(Image.open(shot))
+    kept: dict[str, np.ndarray] = {}
+    HOST[0].inside(
+        context, lambda app: kept.update(now=app.screen.image(app).pixels()[..., :3], own=app.shown.pixels())
+    )
+    assert (seen == kept["now"]).all() and (seen != kept["own"][..., :3]).mean() > 0.1
+    for frame in sorted(film.glob("*.png")):
+        assert (np.asarray(Image.open(frame)) == seen).all(), frame
+
+    wanted = seen_of(app)
+    compare.mode, app.tool(Focusing).shown, app.part = Arrangement.GRID, False, Part()
+    context.yield_(3)
+    app.open_any(str(shot))
+    until(context, lambda: seen_of(app) == wanted and not app.busy, "the wipe is back")
+    HOST[0].inside(context, lambda app: kept.update(again=app.screen.image(app).pixels()[..., :3]))
+    assert (kept["again"] == seen).all()
+    compare.mode, app.tool(Focusing).shown, app.part, app.settings = Arrangement.ONE, False, Part(), before
     context.yield_(2)
 
 
