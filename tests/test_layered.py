@@ -31,6 +31,7 @@ from dofview.methods.layered_regions import CELL, SLICES, Content, Window, sprea
 from dofview.metrics import psnr
 from dofview.pipeline import Pipeline
 from dofview.scene.camera import Camera
+from dofview.scene.load import load
 from dofview.settings import ImageSettings, Settings
 
 LAW = CocLaw(scale=150.0, inverse_focus=0.2)
@@ -230,6 +231,26 @@ def test_peeling_stops_when_nothing_is_left(gpu: Gpu):
     assert 3 <= most.counts["layered peels"] <= 4
     enough = pipeline.render(settings_for(peels=most.counts["layered peels"] + 1))
     assert np.array_equal(most.pixels(), enough.pixels())
+    pipeline.release()
+
+
+def test_peels_found_by_the_depth_test_are_those_that_a_shader_finds(gpu: Gpu, monkeypatch: pytest.MonkeyPatch):
+    """Also when they follow a picture that was kept, and with what lies in front of everything left out of them."""
+    pipeline = Pipeline(gpu, load("demo:rail@20k"))
+    settings = demo_through_gaussian("rail", "layered", (160, 120))
+    pipeline.render(settings.with_params(peels=1))
+    kept = pipeline.render(settings.with_params(peels=4))
+    assert kept.counts["peel parts skipped"] > 0
+    drawn = kept.pixels()
+    pipeline.forget()
+    assert np.array_equal(pipeline.render(settings.with_params(peels=4)).pixels(), drawn)
+    gpu.profile.done_anyway = frozenset({"peel parts skipped"})
+    pipeline.forget()
+    assert np.array_equal(pipeline.render(settings.with_params(peels=4)).pixels(), drawn)
+    gpu.profile.done_anyway = frozenset()
+    monkeypatch.setattr(gpu, "software", False)
+    pipeline.forget()
+    assert np.array_equal(pipeline.render(settings.with_params(peels=4)).pixels(), drawn)
     pipeline.release()
 
 

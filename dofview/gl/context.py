@@ -42,9 +42,16 @@ class Gpu:
         self.profile = Profile(ctx, self.software)
         self.samples_passed = ctx.query(samples=True)
         """The one occlusion query: moderngl cannot release queries, so they are made once and used again."""
+        self._queries: list[moderngl.Query] = []
         self.facts: dict[str, object] = {}
         self._blocks: dict[bytes, tuple[moderngl.Buffer, int]] = {}
         self._frame = 0
+
+    def queries(self, count: int) -> list[moderngl.Query]:
+        """`count` occlusion queries for one pass, the same ones every time."""
+        while len(self._queries) < count:
+            self._queries.append(self.ctx.query(samples=True))
+        return self._queries[:count]
 
     def block(self, data: bytes) -> moderngl.Buffer:
         """Return a uniform buffer holding `data`. None is ever rewritten, so no draw in flight is disturbed."""

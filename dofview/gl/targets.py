@@ -15,6 +15,9 @@ import numpy as np
 from dofview.errors import GLError
 from dofview.gl.layered import DepthArray
 
+DepthKey = tuple[int, int, int, str]
+"""Width, height, layers (0: not an array) and name of a depth buffer."""
+
 # moderngl calls normalised bytes "f1"; numpy knows them as bytes.
 _NUMPY = {"f1": "u1"}
 
@@ -75,10 +78,11 @@ class TargetPool:
     def __init__(self, ctx: moderngl.Context):
         self._ctx = ctx
         self._images: dict[str, Image] = {}
-        self._depths: dict[tuple[int, int, int], moderngl.Renderbuffer | DepthArray] = {}
+        self._depths: dict[DepthKey, moderngl.Renderbuffer | DepthArray] = {}
         self._framebuffers: dict[tuple, moderngl.Framebuffer] = {}
         self._used: dict[str, int] = {}
-        self._depth_used: dict[tuple[int, int, int], int] = {}
+        self._depth_used: dict[DepthKey, int] = {}
+        self._depth_holds: dict[DepthKey, object] = {}
         self._clock = 0
         self.keep_frames = 2
         self._resting = ctx.framebuffer([ctx.renderbuffer((1, 1))])
@@ -97,14 +101,15 @@ class TargetPool:
         self._used[name] = self._clock
         return image
 
-    def framebuffer(self, images: Sequence[Image], depth: bool = False) -> moderngl.Framebuffer:
-        """Return the framebuffer with these colour attachments, and a shared depth buffer of their size if asked.
+    def framebuffer(self, images: Sequence[Image], depth: bool | str = False) -> moderngl.Framebuffer:
+        """Return the framebuffer with these colour attachments, and a depth buffer of their size if asked: the one that
+        all share, or one called `depth` that holds what it held.
 
         Arrays are attached with all their layers, of which a geometry shader chooses; each layer has its own depth then
         (GLError where the driver cannot: ask `layered.DepthArray.available` first).
         """
         shape = images[0].shape
-        depth_key = (*shape.size, shape.layers) if depth else None
+        depth_key = (*shape.size, shape.layers, depth if isinstance(depth, str) else "") if depth else None
         key = (tuple(image.texture.glo for image in images), depth_key)
         if key not in self._framebuffers:
             try:
@@ -117,7 +122,16 @@ class TargetPool:
                 ) from error
         if depth_key is not None:
             self._depth_used[depth_key] = self._clock
+            self._depth_holds.pop(depth_key, None)
         return self._framebuffers[key]
+
+    def keep_depth(self, size: tuple[int, int], depth: str, what: object) -> None:
+        """Remember that the depth buffer called `depth` holds `what`, until a framebuffer with it is asked for."""
+        self._depth_holds[(*size, 0, depth)] = what
+
+    def depth_holds(self, size: tuple[int, int], depth: str, what: object) -> bool:
+        """Whether the depth buffer called `depth` still holds `what`."""
+        return self._depth_holds.get((*size, 0, depth)) == what
 
     def named(self, prefix: str = "") -> list[Image]:
         """All living images whose name starts with `prefix`, by name: what a pass browser lists."""
@@ -142,6 +156,7 @@ class TargetPool:
             self._drop_framebuffers([key for key in self._framebuffers if key[1] == depth])
             self._depths.pop(depth).release()
             del self._depth_used[depth]
+            self._depth_holds.pop(depth, None)
 
     def release(self) -> None:
         """Release everything."""
@@ -151,7 +166,7 @@ class TargetPool:
         self._resting.color_attachments[0].release()
         self._resting.release()
 
-    def _make(self, images: Sequence[Image], depth_key: tuple[int, int, int] | None) -> moderngl.Framebuffer:
+    def _make(self, images: Sequence[Image], depth_key: DepthKey | None) -> moderngl.Framebuffer:
         textures = [image.texture for image in images]
         depth = self._depth(depth_key) if depth_key else None
         if not isinstance(depth, DepthArray):
@@ -160,10 +175,9 @@ class TargetPool:
         depth.attach(framebuffer)
         return framebuffer
 
-    def _depth(self, key: tuple[int, int, int]) -> moderngl.Renderbuffer | DepthArray:
-        """The depth buffer for a width, height and number of layers (0: not an array)."""
+    def _depth(self, key: DepthKey) -> moderngl.Renderbuffer | DepthArray:
         if key not in self._depths:
-            width, height, layers = key
+            width, height, layers, _ = key
             self._depths[key] = (
                 DepthArray(self._ctx, (width, height), layers)
                 if layers

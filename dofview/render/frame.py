@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from moderngl import Framebuffer
 from pydantic import BaseModel, ConfigDict
 
 from dofview.gl.context import Gpu
@@ -16,7 +17,8 @@ from dofview.gl.targets import Image
 from dofview.lens import CocLaw, Lens, focal_px
 from dofview.render.environment import Environment
 from dofview.render.lights import Lights
-from dofview.render.raster import Projection, draw_scene, projection
+from dofview.render.peels import DEPTH, find_behind, settle, shade
+from dofview.render.raster import Projection, Runs, draw_scene, in_view, projection
 from dofview.render.upload import GpuScene
 from dofview.scene.camera import Camera
 
@@ -130,7 +132,7 @@ class Frame:
         before = self.peel(index - 1)
         if before is None:
             return None
-        surfaces = self._surfaces(f"peel{index}", before.inverse_depth)
+        surfaces = self._peeled(index) if self.gpu.software else self._surfaces(f"peel{index}", before.inverse_depth)
         ended = self.peel_is_empty(index) and self.gpu.profile.may_skip("layered peels skipped")
         return None if ended else surfaces
 
@@ -181,19 +183,68 @@ class Frame:
         return depths
 
     def _surfaces(self, name: str, behind: Image | None = None) -> Surfaces:
-        targets = self.gpu.targets
-        color = targets.image(f"frame/{name}", self.size)
-        inverse_depth = targets.image(f"frame/{name} inverse depth", self.size, components=1)
-        if self.cache.holds((self.geometry_key, name), color) & self.cache.holds(
-            (self.geometry_key, name), inverse_depth
-        ):
+        color, inverse_depth = self._images(name)
+        if self._held(name, color, inverse_depth):
             return Surfaces(color, inverse_depth)
         passed = self.gpu.samples_passed
+        own_depth = self._with_depth(color, inverse_depth) if self.gpu.software else None
         with self.gpu.profile.section(f"scene/{name}"):
             draw_scene(
                 self.gpu, self.scene, self.projection(), (color, inverse_depth), lights=self.lights, behind=behind,
                 background=(0.0, 0.0, 0.0) if behind else self.background, passed=passed if behind else None,
+                framebuffer=own_depth,
             )  # fmt: skip
         if behind:
             self.cache.values[(self.geometry_key, color.name)] = passed.samples > 0
+        if own_depth:
+            self.gpu.targets.keep_depth(self.size, DEPTH, (self.geometry_key, name))
         return Surfaces(color, inverse_depth)
+
+    def _with_depth(self, *images: Image) -> Framebuffer:
+        """The framebuffer of `images` with the depth buffer that peels are found with."""
+        return self.gpu.targets.framebuffer(images, depth=DEPTH)
+
+    def _images(self, name: str) -> tuple[Image, Image]:
+        targets = self.gpu.targets
+        return targets.image(f"frame/{name}", self.size), targets.image(f"frame/{name} inverse depth", self.size, 1)
+
+    def _held(self, name: str, *images: Image) -> bool:
+        # All of them are asked: each is then known to be drawn.
+        held = [self.cache.holds((self.geometry_key, name), image) for image in images]
+        return all(held)
+
+    def _peeled(self, index: int) -> Surfaces:
+        """Peel `index` without a test in the shader (`render.peels`)."""
+        name = f"peel{index}"
+        color, inverse_depth = self._images(name)
+        if not self._held(name, color, inverse_depth):
+            with self.gpu.profile.section(f"scene/{name}"):
+                draws = self._find_peel(index)
+                shade(self.gpu, self.scene, self.projection(), color, lights=self.lights, draws=draws)
+                self.gpu.targets.keep_depth(self.size, DEPTH, (self.geometry_key, name))
+        return Surfaces(color, inverse_depth)
+
+    def _find_peel(self, index: int) -> Runs:
+        """Draw the depths of peel `index`, and leave them in the depth buffer; returns what may be in it or behind."""
+        key = (self.geometry_key, "peel")
+        view, before = self.projection(), "pinhole" if index == 1 else f"peel{index - 1}"
+        draws = in_view(self.scene, view)
+        if not self.gpu.targets.depth_holds(self.size, DEPTH, (self.geometry_key, before)):
+            # It was kept from another frame: its depths are drawn once more.
+            if index == 1:
+                scratch = self.gpu.targets.image("frame/inverse depth", self.size, components=1)
+                draw_scene(
+                    self.gpu, self.scene, view, (scratch,), lights=self.lights, defines={"DEPTH_ONLY": 1},
+                    framebuffer=self._with_depth(scratch), draws=draws,
+                )  # fmt: skip
+            else:
+                self._find_peel(index - 1)
+        skips = self.gpu.profile.may_skip("peel parts skipped")
+        if index > 1 and skips:
+            draws = self.cache.values.get((*key, index - 1, "draws"), draws)
+        found = self.gpu.targets.image("frame/found behind", self.size, components=2)
+        behind = find_behind(self.gpu, self.scene, view, found, lights=self.lights, draws=draws)
+        settle(self.gpu, found, self._images(f"peel{index}")[1])
+        self.cache.values[(self.geometry_key, f"frame/peel{index}")] = bool(behind.ranges)
+        draws = self.cache.values[(*key, index, "draws")] = behind if skips else draws
+        return draws

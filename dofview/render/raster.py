@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
 from typing import NamedTuple
 
 import moderngl
@@ -134,32 +136,49 @@ def _draw_all(
     defines: Mapping[str, object],
 ) -> None:  # fmt: skip
     """Draw `draws` into what is bound."""
-    values = {**values, "clip_from_local": _column_major(view.clip_from_local), "eye": tuple(view.eye)}
     if reject is not None:
         defines = {**defines, "HAS_REJECT": 1, "REJECT": reject}
+    bound = by_material(
+        gpu, scene, view, draws, lights, geometry=geometry, textures=textures, blocks=blocks, values=values,
+        defines=defines,
+    )  # fmt: skip
+    for array, ranges in bound:
+        for first, count in ranges:
+            array.render(moderngl.TRIANGLES, vertices=count, first=first)
+
+
+def by_material(
+    gpu: Gpu, scene: GpuScene, view: Projection, draws: Runs, lights: Lights, *, values: Mapping[str, object],
+    defines: Mapping[str, object], geometry: str | None = None, textures: Textures | None = None,
+    blocks: Blocks | None = None,
+) -> Iterator[tuple[moderngl.VertexArray, list[tuple[int, int]]]]:  # fmt: skip
+    """Bind each material of `draws` in turn, and give what is to be drawn with it: an array, and (first, count) of the
+    ranges of its indices."""
+    values = {**values, "clip_from_local": _column_major(view.clip_from_local), "eye": tuple(view.eye)}
     near, far = view.near_far
     if far > FLAT * near:
         defines = {**defines, "LOG_DEPTH": 1}
         values["log_depth"] = (float(np.log2(near)), 1.0 / float(np.log2(far / near)))
     stages = ["render/scene.vert", *([geometry] if geometry else []), "render/scene.frag"]
-    for number, first, count in draws.ranges:
+    for number, runs in groupby(draws.ranges, key=itemgetter(0)):
         material = scene.materials.items[number]
-        all_blocks = {"Material": material.block, "Lights": lights.block, **blocks}
+        all_blocks = {"Material": material.block, "Lights": lights.block, **(blocks or {})}
         all_defines = {**material.features, **lights.defines, **defines}
         program = gpu.shaders.program(*stages, defines=all_defines, blocks=block_texts(all_blocks))
         _set_culling(gpu.ctx, material.double_sided)
         named: dict[str, AnyTexture] = {name: texture for name, (texture, _) in material.textures.items()}
         if "environment_map" in program.samplers:
             named |= lights.textures
-        bind(gpu, program, {**named, **textures}, all_blocks, values)
+        bind(gpu, program, {**named, **(textures or {})}, all_blocks, values)
         samplers = list(enumerate(sampler for _, sampler in material.textures.values()))
         for unit, sampler in samplers:
             sampler.use(unit)
-        scene.array(program.gl).render(moderngl.TRIANGLES, vertices=count, first=first)
+        ranges = [(first, count) for _, first, count in runs]
+        yield scene.array(program.gl), ranges
         for unit, sampler in samplers:
             sampler.clear(unit)
-        gpu.profile.count("draws")
-        gpu.profile.count("triangles", count // 3)
+        gpu.profile.count("draws", len(ranges))
+        gpu.profile.count("triangles", sum(count for _, count in ranges) // 3)
     gpu.profile.count("geometry passes")
 
 

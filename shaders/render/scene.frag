@@ -24,7 +24,9 @@ uniform vec3 eye;  // lens centre or lens sample, local space
 uniform vec2 log_depth;  // log2 of the nearest depth, 1 / log2 of the farthest over it
 #endif
 
-#ifdef DEPTH_ONLY
+#ifdef WINDOW_DEPTH
+layout(location = 0) out vec2 depths;
+#elif defined(DEPTH_ONLY)
 layout(location = 0) out float inverse_depth;
 #else
 layout(location = 0) out vec4 color;
@@ -47,9 +49,18 @@ vec4 light(vec3 radiance)
 void main()
 {
     // gl_FragCoord.w is 1/w of the clip position, and w is the view depth: exact, with no depth buffer in between.
-    inverse_depth = gl_FragCoord.w;
 #ifdef LOG_DEPTH
     gl_FragDepth = clamp((-log2(gl_FragCoord.w) - log_depth.x) * log_depth.y, 0.0, 1.0);
+#endif
+#ifdef WINDOW_DEPTH
+    float inverse_depth = gl_FragCoord.w;
+#ifdef LOG_DEPTH
+    depths = vec2(inverse_depth, -gl_FragDepth);
+#else
+    depths = vec2(inverse_depth, -gl_FragCoord.z);
+#endif
+#else
+    inverse_depth = gl_FragCoord.w;
 #endif
 #ifdef HAS_REJECT
     if (reject(inverse_depth, ivec2(gl_FragCoord.xy))) discard;
