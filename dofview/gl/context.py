@@ -42,6 +42,11 @@ class Gpu:
         self.profile = Profile(ctx, self.software)
         self.samples_passed = ctx.query(samples=True)
         """The one occlusion query: moderngl cannot release queries, so they are made once and used again."""
+        self.nearest, self.linear = (
+            ctx.sampler(repeat_x=False, repeat_y=False, filter=(filtered, filtered))
+            for filtered in (moderngl.NEAREST, moderngl.LINEAR)
+        )
+        """For passes that fetch an image by another filter than its own."""
         self._queries: list[moderngl.Query] = []
         self.facts: dict[str, object] = {}
         self._blocks: dict[bytes, tuple[moderngl.Buffer, int]] = {}
@@ -72,6 +77,8 @@ class Gpu:
 
     def release(self) -> None:
         """Release every object; the context itself stays with whoever made it."""
+        self.nearest.release()
+        self.linear.release()
         self.targets.release()
         self.shaders.release()
         for buffer, _ in self._blocks.values():

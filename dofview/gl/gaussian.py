@@ -77,7 +77,7 @@ def convolve(
         defines, values = {"TAPS": len(weights)}, {"weights": np.array(weights, np.float32).tobytes()}
     draw(
         gpu, "pass/gaussian.frag", into, textures={"source": source}, values={**values, "axis": axis}, defines=defines,
-        within=within, clear=clear,
+        within=within, clear=clear, samplers=None if bilinear else {"source": gpu.nearest},
     )  # fmt: skip
 
 

@@ -62,7 +62,7 @@ def draw(
     blend: tuple | None = None, clear: bool | Color = False,
     viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None,
     vertex: str = "pass/fullscreen.vert", geometry: str | None = None, sprites: int | None = None,
-    when: moderngl.Query | None = None,
+    when: moderngl.Query | None = None, samplers: Mapping[str, moderngl.Sampler] | None = None,
 ) -> None:  # fmt: skip
     """Run the fragment shader `shader` over every pixel of `into` (one image, or several of one size), or over the
     part of them that `viewport` (left, bottom, width, height) or `within` name; `clear`, to 0 or to a colour, is of the
@@ -71,7 +71,7 @@ def draw(
     `geometry` names a geometry shader that chooses the layer when `into` are arrays (pass/to_layer.geom). `sprites`
     draws that many pairs of triangles instead, six corners each, which the shader `vertex` places by gl_VertexID
     (instances of four corners cost several times as much). `when` leaves it to the GPU not to draw if that query
-    passed no sample.
+    passed no sample. `samplers` are for textures that are not to be fetched by their images' own filter.
     """
     images = (into,) if isinstance(into, Image) else tuple(into)
     blocks = blocks or {}
@@ -99,10 +99,15 @@ def draw(
     if vertices == 0:
         return
     bind(gpu, program, textures or {}, blocks, values or {})
+    used = [(unit, samplers[name]) for unit, name in enumerate(textures or {}) if name in samplers] if samplers else []
+    for unit, sampler in used:
+        sampler.use(unit)
     if 0 not in program.arrays:
         program.arrays[0] = ctx.vertex_array(program.gl, [])
     with (when and when.crender) or nullcontext():
         program.arrays[0].render(moderngl.TRIANGLES, vertices=vertices)
+    for unit, sampler in used:
+        sampler.clear(unit)
     gpu.profile.count("passes")
     gpu.profile.count("sprites" if sprites else "fragments", sprites or fragments)
     gpu.profile.count("blended fragments", fragments if blend and not sprites else 0)

@@ -37,6 +37,7 @@ class Peels:
         guard, size = self.frame.guard, self.frame.inner_size
         self.window = Window(guard, guard, guard + size[0], guard + size[1])
         self.textures = {f"color{m}": surfaces.color for m, surfaces in enumerate(peels)} | self.depths
+        self.nearest = peels[0].inverse_depth
         self.content = self._content(visible and not (exhausted and paper))
         if visible and not paper:
             self.defines |= {"SKY": 1, "CELL": CELL, **({"EXHAUSTED": 1} if exhausted else {})}
@@ -50,7 +51,11 @@ class Peels:
         presence = {"PRESENCE": 1} if reach > 0.0 and "PAPER" not in self.defines else {}
         how["defines"] = {**self._defines(layer), **presence, **how.get("defines", {})}
         values = {"start": self.start, **(values or {}), **self._values(layer)} | ({"reach": reach} if presence else {})
-        self.recipe.draw(shader, into, values=values, images={**self.textures, **(images or {})}, **how)
+        textures = {**self.textures, **(images or {})}
+        if presence:
+            textures["depths_nearest"] = self.nearest
+            how["samplers"] = {**how.get("samplers", {}), "depths_nearest": self.recipe.gpu.linear}
+        self.recipe.draw(shader, into, values=values, images=textures, **how)
 
     def _defines(self, layer: Layer) -> dict[str, object]:
         """Of the layers, only the farthest has to do with the background."""
@@ -92,19 +97,18 @@ class Peels:
         return {"anchors": layer.anchors, "background": self.background}
 
     def _pack(self, peels: Sequence[Surfaces]) -> dict[str, Image]:
-        """Inverse depths of four peels in each texel, and those of the first alone."""
+        """Inverse depths of up to four peels in each texel."""
+        count = len(peels)
+        if count == 1:
+            return {"depths_first": peels[0].inverse_depth}
         images = {
-            "depths_first": self.recipe.image("depths_first"),
-            "depths_nearest": self.recipe.image("depths_nearest", components=1, linear=True),
-            **({"depths_last": self.recipe.image("depths_last")} if len(peels) > 4 else {}),
+            "depths_first": self.recipe.image("depths_first", components=2 if count == 2 else 4),
+            **({"depths_last": self.recipe.image("depths_last")} if count > 4 else {}),
         }
-        key = (self.frame.geometry_key, len(peels))
-        held = [self.frame.cache.holds(key, image) for image in images.values()]
+        held = [self.frame.cache.holds((self.frame.geometry_key, count), image) for image in images.values()]
         if not all(held):
-            last = peels[-1].inverse_depth
-            count = 4 if len(peels) <= 4 else 8
-            sources = {f"depth{m}": peels[m].inverse_depth if m < len(peels) else last for m in range(count)}
-            self.recipe.draw("depths.frag", list(images.values()), defines={"PEELS": len(peels)}, images=sources)
+            sources = {f"depth{m}": surfaces.inverse_depth for m, surfaces in enumerate(peels)}
+            self.recipe.draw("depths.frag", list(images.values()), defines={"PEELS": count}, images=sources)
         return images
 
     def _sky_distance(self) -> Image:
@@ -128,7 +132,6 @@ class Peels:
             ]  # fmt: skip
             values = {"nearest": depths.nearest, "slices_per_depth": slices, "background_counts": background_counts}
             defines = {"CELL": CELL, "PEELS": self.defines["PEELS"]}
-            depths_of_all = {name: image for name, image in self.depths.items() if name != "depths_nearest"}
-            self.recipe.draw("content.frag", images, defines=defines, values=values, images=depths_of_all)
+            self.recipe.draw("content.frag", images, defines=defines, values=values, images=self.depths)
             self.frame.cache.values[key] = Content(depths.nearest, slices, *(image.pixels()[::-1] for image in images))
         return self.frame.cache.values[key]  # type: ignore[return-value]

@@ -139,6 +139,7 @@ class Side:
         self.peels.draw(
             "join.frag", target, layer, reach=layer.reach * (step.sigma > 0.0), defines=defines, values=values,
             within=places.own, clear=not added and self._clear(into), images={"buffered": before} if before else None,
+            samplers={"buffered": self.gpu.nearest} if defines["SOURCE"] in (1, 2) else {},
         )  # fmt: skip
         if added:
             self._reduce(target, layer.level, into, places.near, ADD if self.name == "front" or alone else OVER)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
-from moderngl import Query
+from moderngl import Query, Sampler
 from pydantic import BaseModel, ConfigDict
 
 from dofview.gl.passes import Color, Textures, draw
@@ -70,7 +70,8 @@ class Recipe:
         defines: Mapping[str, object] | None = None, blocks: Mapping[str, BaseModel] | None = None,
         blend: tuple | None = None, clear: bool | Color = False,
         viewport: tuple[int, int, int, int] | None = None, within: Tiles | None = None, sprites: int | None = None,
-        when: Query | None = None, images: Textures | None = None, **textures: Image,
+        when: Query | None = None, samplers: Mapping[str, Sampler] | None = None, images: Textures | None = None,
+        **textures: Image,
     ) -> None:  # fmt: skip
         """Run `shader` of the method's folder (or of shaders/ when it has a folder of its own) into `into`. It reads
         `textures`, and `images` where their names are not known beforehand. `sprites` many are placed by the vertex
@@ -82,4 +83,5 @@ class Recipe:
                 self.gpu, path, into, textures={**textures, **(images or {})},
                 blocks={**self.blocks, **(blocks or {})}, values=values, defines=defines, blend=blend, clear=clear,
                 viewport=viewport, within=within, vertex=vertex, sprites=sprites, when=when,
+                samplers=samplers,
             )  # fmt: skip

@@ -1,5 +1,5 @@
 // One direction of a separable filter, with weights from dofview/gl/gaussian.py. The number of taps is a constant so that
-// the loop is unrolled. Beyond the border the last texel is repeated, coverage included: what is constant stays so.
+// the loop is unrolled; without BILINEAR the sampler takes the nearest texel. Beyond the border the last texel is repeated, coverage included: what is constant stays so.
 uniform sampler2D source;
 uniform ivec2 axis;
 #ifdef BILINEAR
@@ -18,11 +18,10 @@ void main()
     for (int i = 1; i < TAPS; ++i)
         color += taps[i].y * (texture(source, place - taps[i].x * along) + texture(source, place + taps[i].x * along));
 #else
-    ivec2 pixel = ivec2(gl_FragCoord.xy), last = textureSize(source, 0) - 1;
-    color = weights[0] * texelFetch(source, pixel, 0);
+    vec2 texel = 1.0 / vec2(textureSize(source, 0)), place = gl_FragCoord.xy * texel, along = vec2(axis) * texel;
+    color = weights[0] * textureLod(source, place, 0.0);
     for (int i = 1; i < TAPS; ++i)
         color += weights[i]
-            * (texelFetch(source, max(pixel - i * axis, ivec2(0)), 0)
-                + texelFetch(source, min(pixel + i * axis, last), 0));
+            * (textureLod(source, place - float(i) * along, 0.0) + textureLod(source, place + float(i) * along, 0.0));
 #endif
 }

@@ -20,13 +20,13 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
 #ifdef HAS_FRONT
-    vec4 sum = texelFetch(front, pixel, 0);
+    vec4 sum = texel_of(front, pixel);
 #else
     vec4 sum = vec4(0.0);
 #endif
     sum = under(sum, pixel);
 #ifdef HAS_BACK
-    sum += max(1.0 - sum.a, 0.0) * texelFetch(back, pixel, 0);
+    sum += max(1.0 - sum.a, 0.0) * texel_of(back, pixel);
 #else
     sum += max(1.0 - sum.a, 0.0) * start;
 #endif

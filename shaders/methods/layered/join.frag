@@ -8,7 +8,7 @@
 // reduced to the buffer's size.
 #include "methods/layered/matte.glsl"
 
-uniform sampler2D buffered;
+uniform sampler2D buffered;  // of SOURCE 1 and 2 the nearest texel
 uniform vec4 start;
 #if SOURCE == 1
 uniform float weights[TAPS];
@@ -21,15 +21,14 @@ vec4 before(ivec2 texel)
 #if SOURCE == 0
     return start;
 #elif SOURCE == 1
-    int last = textureSize(buffered, 0).y - 1;
-    vec4 sum = weights[0] * texelFetch(buffered, texel, 0);
+    vec2 size = 1.0 / vec2(textureSize(buffered, 0)), place = gl_FragCoord.xy * size, along = vec2(0.0, size.y);
+    vec4 sum = weights[0] * textureLod(buffered, place, 0.0);
     for (int i = 1; i < TAPS; ++i)
         sum += weights[i]
-            * (texelFetch(buffered, ivec2(texel.x, max(texel.y - i, 0)), 0)
-                + texelFetch(buffered, ivec2(texel.x, min(texel.y + i, last)), 0));
+            * (textureLod(buffered, place - float(i) * along, 0.0) + textureLod(buffered, place + float(i) * along, 0.0));
     return sum;
 #elif SOURCE == 2
-    return texelFetch(buffered, texel >> LEVEL, 0);
+    return texel_of(buffered, texel >> LEVEL);
 #elif SOURCE == 3
     return texture(buffered, gl_FragCoord.xy * 0.5 / vec2(textureSize(buffered, 0)));
 #endif

@@ -11,7 +11,7 @@ void known(ivec2 texel, out vec4 color, out float extra)
 {
     color = layer(texel);
 #ifdef HAS_BACK
-    color += (1.0 - color.a) * texelFetch(back, texel, 0);
+    color += (1.0 - color.a) * texel_of(back, texel);
 #endif
     if (any(lessThan(texel, window.xy)) || any(greaterThanEqual(texel, window.zw))) color = vec4(0.0);
     extra = 0.0;

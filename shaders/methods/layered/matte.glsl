@@ -13,6 +13,7 @@
 // PAPER: anchors lie half way between layers; omega and omega-dot as printed. The tail is whole in front too and lies
 // under its own head, which widens every silhouette by a part of the blur between two layers.
 #include "include/lens.glsl"
+#include "include/texel.glsl"
 
 const float MARGIN = 1e-5;
 
@@ -77,31 +78,31 @@ float shining(ivec2 pixel, float inverse_depth)
 void fetch_surfaces(ivec2 pixel, out Surface surfaces[COUNT])
 {
     float inverse_depths[9];
-    vec4 depths = texelFetch(depths_first, pixel, 0), colors[COUNT];
+    vec4 depths = texel_of(depths_first, pixel), colors[COUNT];
     for (int i = 0; i < 4; ++i) inverse_depths[i] = depths[i];
-    colors[0] = texelFetch(color0, pixel, 0);
+    colors[0] = texel_of(color0, pixel);
 #if PEELS > 1
-    colors[1] = texelFetch(color1, pixel, 0);
+    colors[1] = texel_of(color1, pixel);
 #endif
 #if PEELS > 2
-    colors[2] = texelFetch(color2, pixel, 0);
+    colors[2] = texel_of(color2, pixel);
 #endif
 #if PEELS > 3
-    colors[3] = texelFetch(color3, pixel, 0);
+    colors[3] = texel_of(color3, pixel);
 #endif
 #if PEELS > 4
-    depths = texelFetch(depths_last, pixel, 0);
+    depths = texel_of(depths_last, pixel);
     for (int i = 0; i < 4; ++i) inverse_depths[4 + i] = depths[i];
-    colors[4] = texelFetch(color4, pixel, 0);
+    colors[4] = texel_of(color4, pixel);
 #endif
 #if PEELS > 5
-    colors[5] = texelFetch(color5, pixel, 0);
+    colors[5] = texel_of(color5, pixel);
 #endif
 #if PEELS > 6
-    colors[6] = texelFetch(color6, pixel, 0);
+    colors[6] = texel_of(color6, pixel);
 #endif
 #if PEELS > 7
-    colors[7] = texelFetch(color7, pixel, 0);
+    colors[7] = texel_of(color7, pixel);
 #endif
     // Behind the last surface of a pixel is the background, which is known.
     vec4 behind_all = vec4(background.rgb, 1.0) * background.a;
