@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from dofview.errors import InputError
-from dofview.lens import Lens, focal_px
+from dofview.lens import LARGEST_LENS, Lens, focal_px
 from dofview.scene.camera import Camera
 from dofview.scene.load import DEMO
 from dofview.scene.model import Scene, SceneCamera
@@ -45,7 +45,7 @@ def visible_lens(scene: Scene, camera: Camera, height_px: int) -> Lens:
     per_radius = focal_px(height_px, camera.vfov_deg) * spread
     radius = OPENING_BLUR * height_px / per_radius if per_radius > 0.0 else 0.0
     # A flat scene has nothing out of focus; the lens then stays well smaller than the distance it looks across.
-    return Lens(radius=min(radius, focus / 20.0), focus_distance=focus)
+    return Lens(radius=min(radius, focus / 20.0, LARGEST_LENS), focus_distance=focus)
 
 
 def _chosen(scene: Scene, name: str | None) -> SceneCamera:

@@ -25,6 +25,8 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 # (measured over textures and edges, radii 8–32 px: 0.55 at each).
 DISC_RMS = 0.5
 MATCHED_SIGMA = 1.1
+LARGEST_LENS = 1e12
+"""Radius, scene units."""
 
 
 class Distribution(StrEnum):
@@ -41,7 +43,9 @@ class Lens(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    radius: float = Field(default=0.0, ge=0.0, le=1e12, allow_inf_nan=False, description="Lens radius, scene units.")
+    radius: float = Field(
+        default=0.0, ge=0.0, le=LARGEST_LENS, allow_inf_nan=False, description="Lens radius, scene units."
+    )
     focus_distance: float = Field(
         default=5.0, ge=1e-12, description="Distance in focus along the view axis, scene units; may be infinite."
     )

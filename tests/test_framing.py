@@ -69,3 +69,16 @@ def test_the_lens_blurs_by_the_same_share_of_the_picture_at_every_scale(size: fl
 def test_a_scene_of_nothing_still_opens(scene):
     settings = opening(scene)
     assert np.isfinite(settings.lens.radius) and settings.lens.focus_distance > 0
+
+
+@pytest.mark.parametrize("size", [1e-43, 1e-20, 1e-3, 1e6, 1e15, 1e18, 1e30])
+@pytest.mark.parametrize("shift", [0.0, 1e6, 1e18])
+def test_any_finite_scene_opens(size: float, shift: float):
+    matrix = np.diag([size, size, size, 1.0])
+    matrix[:3, 3] = shift
+    scene = three_planes()
+    scene = replace(scene, instances=tuple(replace(i, matrix=matrix) for i in scene.instances), _bounds=[])
+    at_once = replace(scene, cameras=(SceneCamera("there", np.array(matrix) / [size, size, size, 1.0], 40.0, 0.1),))
+    for opened in (opening(scene), opening(at_once)):
+        assert opened.camera.distance > 0.0 and np.isfinite(opened.camera.axes()).all()
+        assert 0.0 <= opened.lens.radius < opened.lens.focus_distance < np.inf

@@ -9,7 +9,11 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 # Squares of what is farther away would be infinite in a shader.
-Coordinate = Annotated[float, Field(ge=-1e18, le=1e18)]
+FARTHEST = 1e18
+NEAREST = 1e-12
+"""What a camera looks at is at least this far away, and this share of where it stands: nearer, it would have no
+direction."""
+Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
 Vector = tuple[Coordinate, Coordinate, Coordinate]
 
 
@@ -63,19 +67,27 @@ class Camera(BaseModel):
     def from_matrix(cls, matrix: np.ndarray, vfov_deg: float, distance: float = 1.0) -> Camera:
         """Make a camera from a camera-to-world `matrix` (4, 4) looking along −z, aimed `distance` units ahead."""
         backward = matrix[:3, 2] / np.linalg.norm(matrix[:3, 2])
-        position = matrix[:3, 3]
-        return cls(
-            position=tuple(position),
-            target=tuple(position - backward * distance),
-            up=tuple(matrix[:3, 1]),
-            vfov_deg=vfov_deg,
-        )
+        position = _within(matrix[:3, 3])
+        target = position - backward * _apart(position, distance)
+        return cls(position=tuple(position), target=tuple(target), up=tuple(matrix[:3, 1]), vfov_deg=vfov_deg)
 
     @classmethod
     def fitting(cls, bounds: np.ndarray, vfov_deg: float = 45.0, direction: Vector = (0.4, 0.35, 1.0)) -> Camera:
         """Make a camera that sees the whole box `bounds` (2, 3) from `direction`."""
-        center = bounds.mean(axis=0)
-        radius = float(np.linalg.norm(bounds[1] - bounds[0])) / 2 or 1.0
+        center = _within(bounds.mean(axis=0))
+        radius = math.dist(*bounds) / 2
         toward = np.asarray(direction) / np.linalg.norm(direction)
-        distance = radius / math.sin(math.radians(vfov_deg) / 2)
-        return cls(position=tuple(center + toward * distance), target=tuple(center), vfov_deg=vfov_deg)
+        distance = (radius if radius > NEAREST else 1.0) / math.sin(math.radians(vfov_deg) / 2)
+        position = center + toward * _apart(center, distance)
+        return cls(position=tuple(position), target=tuple(center), vfov_deg=vfov_deg)
+
+
+def _within(point: np.ndarray) -> np.ndarray:
+    """`point` with room for another one at most that far away."""
+    return np.clip(point, -0.25 * FARTHEST, 0.25 * FARTHEST)
+
+
+def _apart(point: np.ndarray, distance: float) -> float:
+    """`distance`, such that what is so far from `point` is another point and within bounds."""
+    least = 4.0 * NEAREST * max(1.0, float(np.abs(point).max()))
+    return min(max(distance, least), 0.5 * FARTHEST)
