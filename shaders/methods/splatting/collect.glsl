@@ -8,7 +8,7 @@ float fetches_made = 0.0;
 struct Here
 {
     float coc;
-    float tolerance;
+    Ends ends;
 };
 
 void gather(sampler2D points, int level, float radius, bool hidden, Here here, inout Layers layers)
@@ -28,10 +28,10 @@ void gather(sampler2D points, int level, float radius, bool hidden, Here here, i
             if (level < LEVELS) share *= staying(coc, merged_from * texel);
             float weight = alpha(q - vec2(x, y) - 0.5, coc, share, level), apart = coc - here.coc;
             vec4 light = vec4(point.rgb, 1.0);
-            float behind = apart > here.tolerance ? weight : 0.0;
+            float behind = weight * beyond(apart, here.ends);
             layers.behind += light * behind;
 #ifndef NO_FRONT
-            float in_front = apart < -here.tolerance && !hidden ? weight : 0.0;
+            float in_front = hidden ? 0.0 : weight * beyond(-apart, here.ends);
             layers.front += light * in_front;
             weight -= in_front;
 #endif

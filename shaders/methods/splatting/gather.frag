@@ -59,7 +59,7 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 own = texelFetch(points, pixel, 0);
-    Here here = Here(point_coc(own), layer_tolerance(point_coc(own)));
+    Here here = Here(point_coc(own), ends_of_layer(point_coc(own)));
     vec3 radius = look(0);
     Layers layers = Layers(vec4(0.0), vec4(0.0), vec4(0.0)), hidden = layers;
     // Where nothing of this level reaches, a pixel of this level is in focus, and opaque.

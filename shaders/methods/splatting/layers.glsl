@@ -7,18 +7,28 @@ struct Layers
     vec4 behind;
 };
 
-// How far apart two CoC radii, px, may be and still share a layer (eq 6; the paper's diameters on both sides cancel).
-// In focus it would be 0 and rounding would decide, so it is at least half a pixel.
-float layer_tolerance(float coc)
+// Where the layers of a pixel end: how far apart two CoC radii, px, may be and still share one (eq 6; the paper's
+// diameters on both sides cancel), and over how much more the next layer is faded into.
+//
+// In focus the tolerance would be 0 and rounding would decide, so it is at least half a pixel. The paper's layers have
+// sharp ends. But a surface that comes towards the camera passes its own end, and there its part in front would cover
+// the rest of it, so that more of what is behind shows through: as stripes, since levels and rows differ in it.
+struct Ends
 {
-    return max(params.delta * abs(coc), 0.5);
+    float tolerance;
+    float fade;
+};
+
+Ends ends_of_layer(float coc)
+{
+    float tolerance = max(params.delta * abs(coc), 0.5);
+    return Ends(tolerance, max(params.delta * -coc, 0.25));
 }
 
-// Eq 6: -1 in front of q, 0 with it, 1 behind it.
-float layer_of(float coc, float coc_here, float tolerance)
+// How much of what is `apart` px from a pixel's surface is beyond its layer, on that side.
+float beyond(float apart, Ends ends)
 {
-    float difference = coc - coc_here;
-    return difference < -tolerance ? -1.0 : difference > tolerance ? 1.0 : 0.0;
+    return clamp((apart - ends.tolerance) / ends.fade, 0.0, 1.0);
 }
 
 // M into L (section 3.5). The paper adds them. A hidden surface that the visible ones already cover would then dilute

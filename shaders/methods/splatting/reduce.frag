@@ -67,7 +67,7 @@ void main()
         farthest = max(farthest, point_coc(points[i]));
     }
     // Within half a layer's tolerance it is one surface.
-    bool edge = farthest - nearest > 0.5 * layer_tolerance(min(abs(nearest), abs(farthest)));
+    bool edge = farthest - nearest > 0.5 * ends_of_layer(min(abs(nearest), abs(farthest))).tolerance;
     float middle = edge ? 0.5 * (nearest + farthest) : farthest;
     for (int i = 0; i < 8; ++i) {
         if (!is_point(points[i])) continue;

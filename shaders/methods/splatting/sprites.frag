@@ -20,13 +20,14 @@ layout(location = 2) out vec4 in_front;
 void main()
 {
     float coc = point_coc(point), coc_here = point_coc(texelFetch(points, ivec2(gl_FragCoord.xy), 0));
-    float tolerance = layer_tolerance(coc_here), apart = coc - coc_here;
+    Ends ends = ends_of_layer(coc_here);
+    float apart = coc - coc_here;
     float weight = alpha((gl_FragCoord.xy - center) / float(1 << level), coc, share, level);
     vec4 light = vec4(point.rgb, 1.0) * weight;
-    behind = apart > tolerance ? light : vec4(0.0);
+    behind = light * beyond(apart, ends);
     same = light - behind;
 #ifndef OF_HIDDEN
-    in_front = apart < -tolerance ? light : vec4(0.0);
+    in_front = light * beyond(-apart, ends);
     same -= in_front;
 #endif
 }
