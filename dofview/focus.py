@@ -23,6 +23,7 @@ from typing import NamedTuple, Protocol
 from pydantic import BaseModel, ConfigDict, Field
 
 from dofview.errors import InputError
+from dofview.reading import read_small
 
 Point = tuple[float, float]
 DepthAt = Callable[[float, float], float]
@@ -189,11 +190,7 @@ def read_trace(path: Path) -> Trace:
     InputError names file, line and value.
     """
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"{path}: is too large for a gaze trace; accepted: up to {MOST_BYTES >> 20} MiB")
-        return Trace(_rows(path.read_text(encoding="utf-8-sig")))
-    except OSError as error:
-        raise InputError(f"{path}: cannot read gaze trace: {(error.strerror or str(error)).lower()}") from error
+        return Trace(_rows(read_small(path, "gaze trace", MOST_BYTES)))
     except (ValueError, csv.Error) as error:
         raise InputError(f"{path}: not a gaze trace: {error}") from error
 

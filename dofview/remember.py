@@ -13,6 +13,7 @@ import dofview
 from dofview.errors import InputError, SettingsError
 from dofview.export import NOTE, write_whole
 from dofview.methods import METHODS
+from dofview.reading import check_regular, read_small, silent
 from dofview.seen.model import Seen
 from dofview.settings import Settings, checked, explain
 
@@ -49,11 +50,12 @@ def read_note(path: Path) -> Remembered:
 
 def _note_of(path: Path) -> str:
     kind = path.suffix.lower()
+    check_regular(path, "the picture")
     try:
         if kind == ".exr":
             import OpenEXR
 
-            with OpenEXR.File(str(path)) as file:
+            with silent(), OpenEXR.File(str(path), header_only=True) as file:
                 text = file.header().get(NOTE)
         else:
             from PIL import Image
@@ -84,11 +86,9 @@ def read_preset(path: Path, base: Settings) -> tuple[Settings, list[str]]:
     SettingsError only when the file cannot be read or is not TOML.
     """
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise SettingsError(f"{path}: too large for a preset; accepted: up to {MOST_BYTES >> 20} MiB")
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot read preset: {(error.strerror or str(error)).lower()}") from error
+        values = tomllib.loads(read_small(path, "preset", MOST_BYTES))
+    except InputError as error:
+        raise SettingsError(str(error)) from error
     except (ValueError, RecursionError) as error:
         raise SettingsError(f"{path}: not a TOML preset: {error}") from error
     complaints: list[str] = []

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import difflib
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import App, CycloptsError, Group, Parameter
-from cyclopts.exceptions import UnknownOptionError
+from cyclopts.exceptions import UnknownOptionError, UnusedCliTokensError
 
 import dofview
 from dofview.cli import flags
@@ -21,6 +22,7 @@ from dofview.methods import METHODS, method
 OPENS_WITH = "demo:foreground"
 PACE = Group("Timing", sort_key=4)
 BESIDE = Group("Comparison", sort_key=5)
+COMMANDS = ("render", "record", "compare", "methods", "info", "doctor", "bench", "pick", "stress")
 
 Spec = Annotated[str, Parameter(name="SCENE", help="A .gltf, .glb, .obj, .ply, .stl or .off file, or demo:NAME.")]
 View = Annotated[
@@ -41,6 +43,8 @@ def run(tokens: Sequence[str]) -> None:
         app(flags.joined_switches(tokens, chosen), exit_on_error=False, print_error=False)
     except UnknownOptionError as error:
         raise InputError(_unknown(error, chosen)) from error
+    except UnusedCliTokensError as error:
+        raise InputError(_too_many(error, tokens)) from error
     except CycloptsError as error:
         error.verbose = False
         raise InputError(f"{error}".strip().rstrip(".") + _hint(tokens)) from error
@@ -246,10 +250,21 @@ def _unknown(error: UnknownOptionError, chosen: str | None) -> str:
     belongs = f" (a parameter of {', '.join(having)})" if having else ""
     first = [flags.fields.flag(n) for n in method(chosen).Params.model_fields] if chosen else []
     others = [n for n in dict.fromkeys(names) if n not in first and not n.startswith("--no-")]
-    return f"unknown flag {flag[:60]}{belongs}; accepted: {', '.join([*first, *others])}"
+    meant = difflib.get_close_matches(flag, [*first, *others], 1, 0.7) if not belongs else []
+    asked = f", did you mean {meant[0]}?" if meant else ""
+    return f"unknown flag {flag[:60]}{belongs}{asked}; accepted: {', '.join([*first, *others])}"
+
+
+def _too_many(error: UnusedCliTokensError, tokens: Sequence[str]) -> str:
+    """A word too many; the first one is then most often a command that is misspelt."""
+    left = ", ".join(repr(token[:60]) for token in error.unused_tokens or ())
+    if tokens and tokens[0] not in COMMANDS and not Path(tokens[0]).exists():
+        meant = difflib.get_close_matches(tokens[0], COMMANDS, 1)
+        asked = f", did you mean {meant[0]}?" if meant else ""
+        return f"{tokens[0][:60]!r} is no command{asked}; accepted: {', '.join(COMMANDS)}, or one scene to view"
+    return f"too much was given: {left}{_hint(tokens)}"
 
 
 def _hint(tokens: Sequence[str]) -> str:
-    known = ("render", "record", "compare", "methods", "info", "doctor", "bench", "pick", "stress")
-    command = next((t for t in tokens if t in known), "")
+    command = next((t for t in tokens if t in COMMANDS), "")
     return f"; see dofview {command + ' ' if command else ''}--help"

@@ -33,8 +33,9 @@ def run_bench(
     if changes:
         sweeps = [dataclasses.replace(quick()[0] if small else Sweep(), **changes)]
     total = len(list(cases(sweeps)))
+    left = len(missing(sweeps, Store(out)))
     with Progress(console=Console(stderr=True)) as progress:
-        task = progress.add_task("measuring", total=total, completed=total - len(missing(sweeps, Store(out))))
+        task = progress.add_task("measuring", total=total, completed=total - left)
 
         def on_case(case: Case, record: dict) -> None:
             found = f"{case.scene} {case.method} CoC {case.coc_px:g}: {record['ms']:.1f} ms {quality(record):.1f} dB"

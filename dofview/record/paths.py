@@ -11,10 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
-from dofview.errors import SettingsError
+from dofview.errors import InputError, SettingsError
 from dofview.focus import GazeSettings, Pull, Trace, step
+from dofview.reading import read_small
 from dofview.scene.navigation import orbit
 from dofview.settings import Settings, apply_view
+
+MOST_BYTES = 16 << 20
+"""Of a file of keyframes."""
 
 Path_ = Callable[[int], Settings]
 """Frame number, from 0, to settings."""
@@ -91,9 +95,9 @@ def keyframes(settings: Settings, frames: int, views: list[Settings]) -> Path_:
 def read_keyframes(path: Path, settings: Settings) -> list[Settings]:
     """Read a JSON list of views; SettingsError names the file and the view that is wrong."""
     try:
-        found = json.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot read keyframes: {(error.strerror or str(error)).lower()}") from error
+        found = json.loads(read_small(path, "keyframes", MOST_BYTES))
+    except InputError as error:
+        raise SettingsError(str(error)) from error
     except (ValueError, RecursionError) as error:
         raise SettingsError(f"{path}: not a JSON list of views: {error}") from error
     if not isinstance(found, list):

@@ -18,6 +18,7 @@ from dofview.errors import InputError, ModelError
 from dofview.gl.context import Gpu
 from dofview.gl.passes import draw
 from dofview.metrics import srgb_decode
+from dofview.reading import silent
 from dofview.scene.limits import Account, Limits
 from dofview.scene.pictures import open_picture
 
@@ -92,13 +93,15 @@ def read(path: Path) -> np.ndarray:
     try:
         if not path.is_file():
             raise InputError(f"environment {str(path)!r} is not a file; accepted: {_ACCEPTED}")
+        account = Account(Limits())
+        account.charge_bytes(path.stat().st_size)
         match path.suffix.lower():
             case ".hdr":
                 pixels = _read_hdr(path.read_bytes())
             case ".exr":
                 pixels = _read_exr(path)
             case suffix:
-                image = open_picture(path.read_bytes(), Account(Limits()), suffix)
+                image = open_picture(path.read_bytes(), account, suffix)
                 pixels = srgb_decode(np.asarray(image.convert("RGB")) / 255.0)
     except (ModelError, ValueError) as error:
         raise InputError(f"environment {str(path)!r} {error}") from error
@@ -165,10 +168,10 @@ def _read_exr(path: Path) -> np.ndarray:
 
     # The library says everything that is wrong with a file by RuntimeError.
     try:
-        with OpenEXR.File(str(path), header_only=True) as file:
+        with silent(), OpenEXR.File(str(path), header_only=True) as file:
             low, high = file.header()["dataWindow"]
         _check_size(int(high[0] - low[0]) + 1, int(high[1] - low[1]) + 1)
-        with OpenEXR.File(str(path), separate_channels=True) as file:
+        with silent(), OpenEXR.File(str(path), separate_channels=True) as file:
             channels = file.channels()
             found = [channels[name].pixels for name in "RGB" if name in channels]
     except RuntimeError as error:
