@@ -185,9 +185,14 @@ def test_it_is_near_the_reference_and_nearer_with_more_rays(planes: Pipeline):
     assert metrics.psnr(more, truth) > metrics.psnr(few, truth)
 
 
-def test_cones_at_16_rays_are_worth_2_db(gpu: Gpu):
-    settings = demo_settings("background", (192, 144)).with_params(samples=16)
-    pipeline = Pipeline(gpu, demo("background@5k"))
+@pytest.mark.parametrize(
+    ("scene", "size", "params"),
+    [("background", (192, 144), {}), ("glossy", (256, 192), {"view_dependent": True, "detail": 2})],
+)
+def test_cones_at_16_rays_are_worth_2_db(gpu: Gpu, scene: str, size: tuple[int, int], params: dict):
+    """Of surfaces too: where two meet their light is averaged, not only what is lit."""
+    settings = demo_settings(scene, size).with_params(samples=16, **params)
+    pipeline = Pipeline(gpu, demo(f"{scene}@5k"))
     truth = reference(pipeline, settings)
     rays, cones = (pipeline.render(settings.with_params(cones=cones)).pixels() for cones in (False, True))
     pipeline.release()

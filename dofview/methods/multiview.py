@@ -10,11 +10,10 @@ import math
 from enum import StrEnum
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from dofview.gl.passes import AnyTexture
 from dofview.gl.targets import Image
-from dofview.lens import focal_px
 from dofview.methods.method import Params as BaseParams
 from dofview.methods.method import Recipe
 from dofview.methods.multiview_cones import NO_CONES, Cones, average
@@ -27,9 +26,9 @@ from dofview.methods.multiview_layers import (
     affordable,
     build,
     count_for_growth,
-    detail_shift,
     fit,
 )  # fmt: skip
+from dofview.methods.multiview_shading import grid, shading
 from dofview.render.frame import Frame
 from dofview.sampling import halton, lens_samples, on_lens
 
@@ -43,8 +42,6 @@ QUALITIES: tuple[dict[str, object], ...] = (
 NOISE_SIZE = 64
 SHARP_PX = 5e-6
 """CoC radius up to which the picture is the pinhole's to 1e-5, px: beyond, cones take in what is beside a pixel."""
-
-Vec3 = tuple[float, float, float]
 
 
 class Spacing(StrEnum):
@@ -112,18 +109,6 @@ class Params(BaseParams):
     shown_layer: int = Field(default=0, ge=0, le=MOST_LAYERS - 1, description="The layer that is shown.")
 
 
-class ViewBlock(BaseModel):
-    """Directions to pixels and offsets of lens points in local space: `corner` + x `right` + y `up` reaches depth 1."""
-
-    model_config = ConfigDict(frozen=True)
-
-    corner: Vec3
-    right: Vec3
-    up: Vec3
-    lens_right: Vec3
-    lens_up: Vec3
-
-
 def render(frame: Frame, params: Params) -> Image:
     """Draw the layers, find which of them each pixel can see, trace."""
     if params.skip and params.show is Show.PICTURE and frame.in_focus(SHARP_PX, picture=False):
@@ -139,12 +124,12 @@ def render(frame: Frame, params: Params) -> Image:
     culling = params.culling if recipe.gpu.profile.may_skip("multiview layers skipped") else Culling.OFF
     reach = mask(recipe, culling, layers, float(np.abs(points).max()) + noise / 2, cones.footprint)
     result = recipe.image("result")
-    grid = {"detail": float(layers.detail), "detail_shift": detail_shift(layers.detail), "mask_shift": reach.shift}
+    values = {**grid(layers), "mask_shift": reach.shift}
     if params.show in (Show.PICTURE, Show.PROBES):
-        _trace(recipe, params, layers, cones, reach, result, {**grid, "noise_width": noise})
+        _trace(recipe, params, layers, cones, reach, result, {**values, "noise_width": noise})
     else:
         recipe.draw(
-            "show.frag", result, blocks={"Slabs": layers.slabs}, values=grid, mask=reach.image,
+            "show.frag", result, blocks={"Slabs": layers.slabs}, values=values, mask=reach.image,
             layer_color=layers.images["layer_color"],
         )  # fmt: skip
     return result
@@ -169,18 +154,14 @@ def _points_key(frame: Frame, params: Params) -> tuple:
 def _trace(
     recipe: Recipe, params: Params, layers: Layers, cones: Cones, reach: Mask, into: Image, values: dict[str, object]
 ) -> None:  # fmt: skip
-    frame = recipe.frame
-    blocks: dict[str, BaseModel] = {"Slabs": layers.slabs}
-    textures: dict[str, AnyTexture] = {**layers.images, **cones.images, "mask": reach.image, "noise": _noise(recipe)}
-    textures["lens_points"] = _points(recipe, params)
-    if layers.defines:
-        blocks |= {"View": _view(frame), "Lights": frame.lights.block}
-        textures |= frame.lights.textures
+    frame, light = recipe.frame, shading(recipe.frame, layers)
+    textures: dict[str, AnyTexture] = {**layers.images, **cones.images, **light.textures}
+    textures |= {"mask": reach.image, "noise": _noise(recipe), "lens_points": _points(recipe, params)}
     # What decides on code is compiled in: a software rasteriser runs both sides of every branch.
     options = {"PROBES": params.probes, "CONES": params.cones, "JITTER": list(Jitter).index(params.jitter)}
     recipe.draw(
-        "trace.frag", into, blocks=blocks, images=textures,
-        defines={**options, **layers.defines, **frame.lights.defines},
+        "trace.frag", into, blocks={**light.blocks, "Slabs": layers.slabs}, images=textures,
+        defines={**options, **light.defines},
         values={**values, "cone_width": cones.width, "background": frame.background, "guard": frame.guard},
     )  # fmt: skip
 
@@ -200,12 +181,3 @@ def _noise(recipe: Recipe) -> Image:
     if not recipe.frame.cache.holds("noise", image):
         image.write(np.random.default_rng(2009).random((NOISE_SIZE, NOISE_SIZE, 4), np.float32))
     return image
-
-
-def _view(frame: Frame) -> ViewBlock:
-    right, up, backward = frame.camera.axes()
-    focal = focal_px(frame.inner_size[1], frame.camera.vfov_deg)
-    width, height = frame.size
-    corner = -backward - right * (width / 2 / focal) - up * (height / 2 / focal)
-    vectors = (corner, right / focal, up / focal, right * frame.lens.radius, up * frame.lens.radius)
-    return ViewBlock(**dict(zip(ViewBlock.model_fields, (tuple(v.tolist()) for v in vectors), strict=True)))

@@ -14,6 +14,7 @@ from dofview.gl.passes import draw
 from dofview.gl.targets import Image
 from dofview.methods.method import Recipe
 from dofview.methods.multiview_layers import TILE, Layers
+from dofview.methods.multiview_shading import grid, shading
 
 PATCH = 16
 """Side of what is averaged at once where a layer holds anything, pixels; a multiple of `TILE`."""
@@ -39,21 +40,24 @@ def average(recipe: Recipe, layers: Layers, width: float) -> Cones:
     """
     frame, slabs, width = recipe.frame, layers.slabs, width * layers.detail
     sources = {name: image for name, image in layers.images.items() if name != "layer_inverse_depth"}
-    images = {}
-    for name, image in sources.items():
-        size, components, dtype, count = image.size, image.shape.components, image.shape.dtype, image.shape.layers
-        images[name] = recipe.image(f"{name.replace('_', ' ')} in cones", size, components, dtype, True, count)
+    color = layers.images["layer_color"]
+    images = {
+        name: recipe.image(f"{name.replace('_', ' ')} in cones", color.size, *kind, True, color.shape.layers)
+        for name, kind in layers.kind.cone_formats().items()
+    }
     key = (frame.geometry_key, layers.kind, frame.lens_block, width)
     kept = [frame.cache.holds(key, image) for image in images.values()]
     if not all(kept) and slabs.count:
         across, down = (-(-side // PATCH) for side in frame.size)
+        light = shading(frame, layers)
         with recipe.gpu.profile.section("multiview/cones"):
             draw(
                 recipe.gpu, "methods/multiview/cones.frag", tuple(images.values()),
-                textures={**sources, "tiles": layers.tiles}, blocks={**recipe.blocks, "Slabs": slabs}, clear=True,
+                textures={**sources, **light.textures, "tiles": layers.tiles},
+                blocks={**recipe.blocks, **light.blocks, "Slabs": slabs}, clear=True,
                 vertex="methods/multiview/cones.vert", geometry="methods/multiview/cones.geom",
-                sprites=-(-across * down // 2), defines={**layers.defines, "PATCH": PATCH, "TILE": TILE},
-                values={"cone_width": width, "detail": layers.detail},
+                sprites=-(-across * down // 2), defines={**light.defines, "PATCH": PATCH, "TILE": TILE},
+                values={**grid(layers), "cone_width": width},
             )  # fmt: skip
     radii = np.abs(frame.coc.radius_px(np.mean(slabs.bounds(), axis=0)))
     # A bilinear fetch reads two squares along each axis: as far as one and a half of them.

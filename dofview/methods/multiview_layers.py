@@ -75,10 +75,18 @@ class Kind(NamedTuple):
             formats |= {"layer_normal": (4, "f4"), "layer_emissive": (4, "f2"), "layer_occlusion": (1, "f1")}
         return formats
 
+    def cone_formats(self) -> dict[str, tuple[int, str]]:
+        """The same of what cones read, in the order of cones.frag's outputs."""
+        formats = {"layer_color": self.formats()["layer_color"]}
+        if self.surfaces:
+            # Where a highlight moves away, much is taken from the light and little left: it is kept in full.
+            formats |= {"layer_normal": (4, "f4"), "layer_light": (4, "f4"), "layer_occlusion": (1, "f1")}
+        return formats
+
     def texel_bytes(self) -> float:
         """Bytes per texel of a layer, what cones read and depth buffer included."""
-        held = sum(components * int(dtype[1]) for components, dtype in self.formats().values())
-        return (2.0 * held if self.cones else held) + 4.0
+        formats = [*self.formats().values(), *(self.cone_formats().values() if self.cones else ())]
+        return 4.0 + sum(components * int(dtype[1]) for components, dtype in formats)
 
 
 class Layers(NamedTuple):
@@ -94,10 +102,6 @@ class Layers(NamedTuple):
     @property
     def detail(self) -> int:
         return self.kind.detail
-
-    @property
-    def defines(self) -> dict[str, int]:
-        return {"SURFACES": 1} if "layer_normal" in self.images else {}
 
 
 def fit(frame: Frame, count: int, overlap: float) -> Slabs:

@@ -1,5 +1,7 @@
-// A layer averaged over squares as wide as its cones, colour premultiplied by how much of the square is covered.
+// A layer averaged over squares as wide as its cones, colour premultiplied by how much of the square is covered. Surfaces
+// are averaged, and so is their light for the lens centre (seen.glsl).
 #include "methods/multiview/cones.glsl"
+#include "methods/multiview/grid.glsl"
 
 uniform sampler2DArray layer_color;
 #ifdef SURFACES
@@ -13,7 +15,7 @@ flat in int slab;
 layout(location = 0) out vec4 color;
 #ifdef SURFACES
 layout(location = 1) out vec4 normal_roughness;
-layout(location = 2) out vec4 emissive_metallic;
+layout(location = 2) out vec4 light_metallic;
 layout(location = 3) out float occlusion;
 #endif
 
@@ -35,18 +37,23 @@ void main()
             vec2 inside = min(vec2(x + 1, y + 1), high) - max(vec2(x, y), low);
             float weight = inside.x * inside.y;
             ivec3 texel = ivec3(x, y, slab);
+            vec4 held = texelFetch(layer_color, texel, 0);
             whole += weight;
-            sums[0] += weight * texelFetch(layer_color, texel, 0);
+            sums[0] += weight * held;
 #ifdef SURFACES
-            sums[1] += weight * texelFetch(layer_normal, texel, 0);
-            sums[2] += weight * texelFetch(layer_emissive, texel, 0);
-            sums[3] += weight * texelFetch(layer_occlusion, texel, 0);
+            if (held.a == 0.0) continue;
+            vec4 normal = texelFetch(layer_normal, texel, 0), emissive = texelFetch(layer_emissive, texel, 0);
+            float open = texelFetch(layer_occlusion, texel, 0).r;
+            vec3 light = lit(held, normal, emissive, open, -normalize(toward(vec2(x, y) + 0.5)));
+            sums[1] += weight * normal;
+            sums[2] += weight * vec4(light, emissive.w);
+            sums[3].r += weight * open;
 #endif
         }
     color = sums[0] / whole;
 #ifdef SURFACES
     normal_roughness = sums[1] / whole;
-    emissive_metallic = sums[2] / whole;
+    light_metallic = sums[2] / whole;
     occlusion = sums[3].r / whole;
 #endif
 }

@@ -3,23 +3,23 @@ layout(triangles) in;
 layout(triangle_strip, max_vertices = 128) out;
 
 #include "methods/multiview/cones.glsl"
+#include "methods/multiview/grid.glsl"
 
 uniform usampler2D tiles;
 uniform sampler2DArray layer_color;
-uniform int detail;
 
 flat out int slab;
 
 void main()
 {
     ivec2 size = textureSize(layer_color, 0).xy, count = textureSize(tiles, 0);
-    int across = (size.x / detail + PATCH - 1) / PATCH;
+    int across = (size.x / int(detail) + PATCH - 1) / PATCH;
     ivec2 patch_ = ivec2(gl_PrimitiveIDIn % across, gl_PrimitiveIDIn / across);
     ivec2 first = patch_ * (PATCH / TILE), last = min(first + PATCH / TILE, count);
     uint bits = 0u;
     for (int y = first.y; y < last.y; ++y)
         for (int x = first.x; x < last.x; ++x) bits |= texelFetch(tiles, ivec2(x, y), 0).r;
-    vec2 from = vec2(patch_ * PATCH * detail), to = min(from + float(PATCH * detail), vec2(size));
+    vec2 from = vec2(patch_ * PATCH) * detail, to = min(from + float(PATCH) * detail, vec2(size));
     vec2 middle = vec2(size) / 2.0;
     for (int k = 0; k < slabs.count; ++k) {
         if ((bits >> k & 1u) == 0u) continue;

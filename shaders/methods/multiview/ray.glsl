@@ -5,12 +5,11 @@
 // and change nothing once `more` is false, because it may run the last turn again for a pixel that is done (Mesa 22.3
 // hands out the values of that turn).
 #include "include/lens.glsl"
+#include "methods/multiview/grid.glsl"
 #include "methods/multiview/slabs.glsl"
 #include <Params>
 
 uniform sampler2DArray layer_inverse_depth;
-uniform float detail;        // texels of a layer per pixel
-uniform float detail_shift;  // where their grid begins, pixels, so that one in `detail` has a pixel's centre
 
 const float EMPTY = -1e9;
 

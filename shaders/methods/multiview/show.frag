@@ -1,4 +1,5 @@
 // What the layers hold, to look at: one layer's colour or coverage, or how many layers a pixel's rays walk.
+#include "methods/multiview/grid.glsl"
 #include "methods/multiview/heat.glsl"
 #include <Params>
 #include <Slabs>
@@ -6,8 +7,6 @@
 uniform sampler2DArray layer_color;
 uniform usampler2D mask;
 uniform int mask_shift;
-uniform float detail;
-uniform float detail_shift;
 
 out vec4 color;
 
