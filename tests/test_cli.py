@@ -378,3 +378,17 @@ def test_an_output_that_cannot_be_printed_is_said():
             [sys.executable, "-m", "dofview", "methods"], stdout=full, stderr=subprocess.PIPE, text=True
         )
     assert done.returncode == 3 and done.stderr.count("\n") == 1 and "standard output" in done.stderr
+
+
+def test_pick_names_a_command_that_is_understood(capsys, tmp_path):
+    """Through the scene's own lens, and of its own results alone, whatever else the folder holds."""
+    ask = ["pick", "demo:crossing", "--size", "32x24", "--out", str(tmp_path)]
+    assert main([*ask, "--min-psnr", "10", "--coc", "2"]) == 0
+    assert main([*ask, "--budget", "100000ms", "--coc", "3"]) == 0
+    said, command = capsys.readouterr().out.splitlines()[-2:]
+    assert "uniform disc" in said and command.startswith("dofview demo:crossing --method ")
+    kept = [json.loads(line) for line in (tmp_path / "results.jsonl").read_text().splitlines()]
+    best = max((r for r in kept if r["coc_px"] == 3.0), key=lambda r: r["psnr"])
+    assert f"--method {best['method']} " in command and f"{best['psnr']:.1f} dB" in said
+    output = str(tmp_path / "picture.png")
+    assert main(["render", *command.split()[1:], "-o", output, "--size", "32x24"]) == 0

@@ -179,11 +179,11 @@ CLAIMS = (
           size=PAPER_SIZE),
     Claim("Schedl, Wimmer 2012", "the same with few triangles", 47.0, "times", _speed_up("layered", 256, 16.0),
           "defaults, mean CoC 16, median of three scenes at 512×384", "20,000 triangles here, 74,000 there"),
-    Claim("Kraus, Strengert 2007", "time over sub-images: twice the sub-images, times", 1.02, "as long each",
+    Claim("Kraus, Strengert 2007", "growth of time over growth of sub-images", 1.02, "times",
           _growth("pyramid", 4.0, 64.0, per="pyramid sub-images"),
           "12 take 70.4 ms, 6 take 34.5; here growth of time over growth of their number, mean CoC 4 to 64, on a "
           "canvas of one size, as there", "", "most", guard=0),
-    Claim("Kraus, Strengert 2007", "the same where the canvas grows", 1.02, "as long each",
+    Claim("Kraus, Strengert 2007", "the same where the canvas grows", 1.02, "times",
           _growth("pyramid", 4.0, 64.0, per="pyramid sub-images"), "with a guard band as wide as the blur",
           "up to 128 px on each side, which blur in what is outside the picture", "most"),
     Claim("Lee, Kim, Choi 2009", "mipmap, background blur", 37.66, "dB", _psnr("mipmap", BACK, 16.0),

@@ -95,28 +95,37 @@ def _cost(axes: Axes, title: str, records: list[dict], across: str, label: str) 
 
 
 def pass_bars(panels: dict[str, list[dict]]) -> Figure:
-    """A panel a scene: time by pass, stacked, a bar a method; passes from a tenth of the bar on are named."""
-    figure, row = _figure(len(panels), height=1.25)
-    for axes, (title, records) in zip(row, panels.items(), strict=True):
-        _label(axes, title, "", "ms")
-        most = max((sum(r["passes_ms"].values()) for r in records), default=1.0)
-        for number, record in enumerate(records):
-            _bar(axes, number, record, most)
-        axes.set_xticks(range(len(records)), [r["method"] for r in records], fontsize=7, rotation=20)
-        axes.grid(axis="x", visible=False)
+    """A panel a scene, a bar a method: the shares of its passes, with their milliseconds where there is room, and the
+    sum behind it."""
+    from matplotlib.figure import Figure
+
+    bars = sum(map(len, panels.values()))
+    figure = Figure(figsize=(3.0 * PANEL[0], 0.55 * len(panels) + 0.27 * bars))
+    for number, (title, records) in enumerate(panels.items(), 1):
+        axes = figure.add_subplot(len(panels), 1, number)
+        _label(axes, title, "", "")
+        for place, record in enumerate(records):
+            _bar(axes, place, record)
+        axes.set_yticks(range(len(records)), [r["method"] for r in records], fontsize=8)
+        axes.set_xlim(0.0, 1.08)
+        axes.set_xticks([])
+        axes.invert_yaxis()
+        axes.grid(visible=False)
+        axes.spines["bottom"].set_visible(False)
     figure.tight_layout()
     return figure
 
 
-def _bar(axes: Axes, number: int, record: dict, most: float) -> None:
-    bottom = 0.0
+def _bar(axes: Axes, place: int, record: dict) -> None:
+    whole, left = max(sum(record["passes_ms"].values()), 1e-9), 0.0
     for rank, (name, value) in enumerate(sorted(record["passes_ms"].items(), key=lambda item: -item[1])):
-        axes.bar(number, value, 0.86, bottom=bottom, color=color(record["method"]), lw=0.6, edgecolor="white",
-                 alpha=max(0.85 - 0.16 * rank, 0.12))  # fmt: skip
-        if value > 0.05 * most:
-            axes.text(number, bottom + value / 2, f"{name.split('/')[-1]}\n{value:.0f}", ha="center", va="center",
-                      fontsize=5.5, linespacing=0.95)  # fmt: skip
-        bottom += value
+        share, text = value / whole, f"{name.split('/')[-1].replace('_', ' ')} {value:.0f}"
+        axes.barh(place, share, 0.86, left=left, color=color(record["method"]), lw=0.6, edgecolor="white",
+                  alpha=max(0.7 - 0.13 * rank, 0.12))  # fmt: skip
+        if share > 0.0065 * len(text):
+            axes.text(left + share / 2, place, text, ha="center", va="center", fontsize=7)
+        left += share
+    axes.text(1.005, place, f"{whole:.0f} ms", ha="left", va="center", fontsize=8)
 
 
 def save(figure: Figure, path: Path) -> None:

@@ -22,9 +22,11 @@ TITLE = "Run time against error"
 STYLE = (
     "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:1180px;padding:0 1em;color:#222}"
     "img{max-width:100%}table{border-collapse:collapse;font-size:12px;margin:1em 0;display:block;overflow-x:auto}"
-    "td,th{padding:3px 9px;border-bottom:1px solid #e2e2e2;text-align:right;white-space:nowrap}"
-    "th{background:#f6f6f6}td:first-child,th:first-child,td:last-child{text-align:left}td:last-child{white-space:normal}"
+    "td,th{padding:3px 9px;border-bottom:1px solid #e2e2e2;text-align:left;white-space:nowrap}"
+    "th{background:#f6f6f6}.n{text-align:right}td:last-child{white-space:normal}"
 )
+_NUMBER = re.compile(r"$|–|equal|[-+*]*\d")
+"""How a cell of figures begins; a column of them stands to the right."""
 Block = str | Table | tuple[str, Path]
 """A paragraph or heading in Markdown, a table, or a picture with what it shows."""
 
@@ -98,7 +100,10 @@ def _pareto(store: Store, records: list[dict]) -> Iterator[Block]:
     found = [r for r in records if _usual(r, records)]
     for coc in sorted({r["coc_px"] for r in found if not is_default(r)} or {r["coc_px"] for r in found}):
         panels = _by_scene([r for r in found if r["coc_px"] == coc])
-        title = f"PSNR over time, mean CoC {coc:g} px; to the upper left is better, the grey line is the Pareto front"
+        title = (
+            f"PSNR over time, mean CoC {coc:g} px; to the upper left is better, the grey line is the Pareto front; "
+            "filled points through a disc, hollow ones through a Gaussian lens"
+        )
         yield _saved(store, f"pareto-{coc:g}px", plots.error_against_time(panels), title)
 
 
@@ -119,7 +124,7 @@ def _costs(store: Store, records: list[dict]) -> Iterator[Block]:
         scene: sorted((r for r in found if is_default(r) and r["coc_px"] == middle), key=_by_method)
         for scene, found in _by_scene([r for r in usual if r["method"] != "accumulation"]).items()
     }
-    yield _saved(store, "passes", plots.pass_bars(bars), f"Time by pass, mean CoC {middle:g} px, each waited for")
+    yield _saved(store, "passes", plots.pass_bars(bars), f"Shares of the passes, ms, mean CoC {middle:g} px")
 
 
 def _varied(records: list[dict], across: str, coc: float) -> list[dict]:
@@ -203,8 +208,13 @@ def _html(block: Block) -> str:
             f"<p>{_inline(part)}</p>" for part in block.split("\n\n")
         )  # fmt: skip
     if isinstance(block, Table):
-        head = "".join(f"<th>{html.escape(c)}</th>" for c in block.columns)
-        body = "".join("<tr>" + "".join(f"<td>{_inline(cell)}</td>" for cell in row) + "</tr>" for row in block.rows)
+        numbers = [all(_NUMBER.match(row[place]) for row in block.rows) for place in range(len(block.columns))]
+        kinds = [" class=n" if number else "" for number in numbers]
+        head = "".join(f"<th{kind}>{html.escape(name)}</th>" for kind, name in zip(kinds, block.columns, strict=True))
+        rows = (
+            "".join(f"<td{k}>{_inline(cell)}</td>" for k, cell in zip(kinds, row, strict=True)) for row in block.rows
+        )
+        body = "".join(f"<tr>{cells}</tr>" for cells in rows)
         return f"<h2>{html.escape(block.title)}</h2><p>{_inline(block.text)}</p><table><tr>{head}</tr>{body}</table>"
     title, path = block
     kind = "png" if path.suffix == ".png" else "jpeg"

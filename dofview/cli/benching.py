@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,12 @@ from dofview.bench.skips import SKIPS, measure_skips
 from dofview.bench.store import Store
 from dofview.cli.chosen import read_size
 from dofview.errors import SettingsError
+from dofview.framing import opening
+from dofview.lens import Distribution
 from dofview.methods import method
+from dofview.scene.load import load
+
+_WORDS = {Distribution.UNIFORM_DISC: "uniform disc", Distribution.GAUSSIAN: "Gaussian lens"}
 
 
 def run_bench(
@@ -68,22 +74,25 @@ def run_fetches(out: Path) -> None:
 def run_pick(
     scene: str, budget: str | None, min_psnr: float | None, coc_px: float, size: str, out: Path | None
 ) -> None:
-    """Measure the methods on a scene and name the one to take."""
+    """Measure the methods on a scene, through the lens that it opens with, and name the one to take."""
     budget_ms = None if budget is None else _milliseconds(budget)
     if budget_ms is None and min_psnr is None:
         raise SettingsError("pick needs --budget 8ms, --min-psnr 38, or both")
+    own = opening(load(scene), scene).lens.distribution
+    lens = own if own is Distribution.GAUSSIAN else Distribution.UNIFORM_DISC
     sweep = dataclasses.replace(
-        quick()[0], scenes=(scene,), coc_px=(coc_px,), sizes=(read_size(size),), every_quality=True, views=256
-    )
-    import tempfile
-
-    with tempfile.TemporaryDirectory() as folder:
-        store = bench([sweep], out or Path(folder))
-        chosen = pick([r for r in store.records if r["scene"] == scene], budget_ms=budget_ms, min_psnr=min_psnr)
-    lens = {"radius": f"{chosen['lens_radius']:.6g}"} if "lens_radius" in chosen else {}
-    given = {"method": chosen["method"], **lens, **chosen["parameters"]}
+        quick()[0], scenes=(scene,), coc_px=(coc_px,), sizes=(read_size(size),), every_quality=True, views=256,
+        distributions=(lens.value,),
+    )  # fmt: skip
+    keys = {case.key for case in sweep.cases()}
+    with tempfile.TemporaryDirectory() as folder, Progress(console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("measuring", total=len(keys))
+        store = bench([sweep], out or Path(folder), lambda case, record: progress.advance(task))
+    # The folder may hold other results.
+    chosen = pick([r for r in store.records if r["key"] in keys], budget_ms=budget_ms, min_psnr=min_psnr)
+    given = {"method": chosen["method"], "radius": f"{chosen['lens_radius']:.6g}", **chosen["parameters"]}
     flags = " ".join(f"--{name.replace('_', '-')} {value}" for name, value in given.items())
-    print(f"{chosen['ms']:.1f} ms, {quality(chosen):.1f} dB against its {chosen['distribution']} reference")
+    print(f"{chosen['ms']:.1f} ms, {quality(chosen):.1f} dB against the reference ({_WORDS[lens]})")
     print(f"dofview {scene} {flags}")
 
 
