@@ -206,3 +206,8 @@ def test_a_lost_worker_loses_no_finished_result(tmp_path):
     keys = [json.loads(line)["key"] for line in lines]
     assert sorted(keys) == sorted(case.key for case in sweep.cases()) == sorted(r["key"] for r in store.records)
     assert lines[: len(first)] == first and len(first) == 1
+    # Pictures come from the workers, too.
+    shown = [r["picture"] for r in store.records if "picture" in r]
+    assert shown and all((tmp_path / name).stat().st_size > 500 for name in shown), (
+        "pictures come from the workers, too"
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from dofview.bench.measure import Bench
 from dofview.bench.plan import Case, Sweep, cases
 from dofview.bench.store import Store
 from dofview.errors import InputError
+from dofview.export import write_whole
 
 OnCase = Callable[[Case, dict], None]
 Group = list[tuple[Sweep, Case]]
@@ -49,20 +51,30 @@ def bench_on_dask(
     with client:
         futures = {client.submit(measure_group, group, pure=False): group for group in _groups(left)}
         for future in as_completed(list(futures)):
-            for (_, case), record in zip(futures[future], future.result(), strict=True):
+            for (_, case), (record, picture) in zip(futures[future], future.result(), strict=True):
+                if picture:
+                    _put(folder / record["picture"], picture)
                 store.add(case, record)
                 on_case(case, record)
     store.write_tables()
     return store
 
 
-def measure_group(group: Group) -> list[dict]:
-    """Measure cases in this process, in a context of their own."""
-    measurer = Bench()
-    try:
-        return [measurer.run(case, sweep) for sweep, case in group]
-    finally:
-        measurer.release()
+def measure_group(group: Group) -> list[tuple[dict, bytes]]:
+    """Measure cases in this process, in a context of their own: each record, and the file of its picture if it has one,
+    since another machine's folder is not ours."""
+    with tempfile.TemporaryDirectory() as name:
+        measurer = Bench(Path(name))
+        try:
+            records = [measurer.run(case, sweep) for sweep, case in group]
+        finally:
+            measurer.release()
+        return [(r, (Path(name) / str(r["picture"])).read_bytes() if "picture" in r else b"") for r in records]
+
+
+def _put(path: Path, content: bytes) -> None:
+    path.parent.mkdir(exist_ok=True)
+    write_whole(path, lambda part: part.write_bytes(content))
 
 
 def missing(sweeps: Sequence[Sweep], store: Store) -> Group:
