@@ -40,6 +40,12 @@ def test_rows_that_take_long_get_every_fourth_seed():
     assert seeds == [3, 7, 11]
 
 
+def test_however_little_time_there_is_every_row_can_be_asked_for_once(gpu: Gpu):
+    row = Row(95, "quick", bounds(1.0), lambda bench, method, random: [Measured("nothing", 0.0)])
+    tried = [stress(gpu, rows=(row,), size=16, minutes=1e-9, at_least=count).cases for count in (0, 1, 2)]
+    assert tried == [0, len(row.methods()), 2 * len(row.methods())]
+
+
 def test_a_broken_bound_is_reported_with_the_command_that_repeats_it(gpu: Gpu):
     seen: list[float] = []
 

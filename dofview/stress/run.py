@@ -69,16 +69,20 @@ def cases(rows: tuple[Row, ...], methods: tuple[str, ...], seed: int) -> Iterato
 
 def stress(
     gpu: Gpu, *, rows: tuple[Row, ...] = ROWS, methods: tuple[str, ...] = METHODS, seed: int = 1, size: int = 128,
-    views: int = 256, minutes: float | None = None, rounds: int = 1,
+    views: int = 256, minutes: float | None = None, rounds: int = 1, at_least: int = 0,
     on_case: Callable[[Row, str, int, list[Failure]], None] = lambda row, method, seed, found: None,
 ) -> Report:  # fmt: skip
-    """Run cases for `minutes`, or `rounds` seeds of every row and method when no time is given."""
+    """Run cases for `minutes`, and `at_least` so many seeds of every row and method on a slow machine; or `rounds` seeds
+    when no time is given."""
     bench = Bench(gpu, size, views)
     report = Report()
     deadline = None if minutes is None else time.monotonic() + 60.0 * minutes
     try:
         for row, method, number in cases(rows, methods, seed):
-            over = number >= seed + rounds if deadline is None else time.monotonic() >= deadline
+            if deadline is None:
+                over = number >= seed + rounds
+            else:
+                over = number >= seed + at_least and time.monotonic() >= deadline
             if over:
                 return report
             try:
