@@ -72,8 +72,8 @@ def stress(
     views: int = 256, minutes: float | None = None, rounds: int = 1, at_least: int = 0,
     on_case: Callable[[Row, str, int, list[Failure]], None] = lambda row, method, seed, found: None,
 ) -> Report:  # fmt: skip
-    """Run cases for `minutes`, and `at_least` so many seeds of every row and method on a slow machine; or `rounds` seeds
-    when no time is given."""
+    """Run cases for `minutes`, on a slow machine longer: until every row and method had `at_least` so many seeds. When
+    no time is given, run `rounds` seeds."""
     bench = Bench(gpu, size, views)
     report = Report()
     deadline = None if minutes is None else time.monotonic() + 60.0 * minutes
