@@ -96,7 +96,7 @@ def test_a_wipe_has_each_picture_on_its_side(planes: Pipeline):
 
 def test_a_grid_has_every_method_in_its_cell(planes: Pipeline, gpu: Gpu):
     found = seen(planes, arrangement=Arrangement.GRID).astype(float)
-    boxes = cells(len(METHODS), Box(0, 0, *SIZE))
+    boxes = cells(len(METHODS), Box(0, 0, *SIZE))[: len(METHODS)]
     assert len({(box.left, box.top) for box in boxes}) == len(METHODS)
     for name, box in zip(METHODS, boxes, strict=True):
         there = found[box.top : box.top + box.height - 9, box.left : box.left + box.width]
@@ -124,9 +124,8 @@ def test_an_error_map_is_that_of_the_two_pictures(planes: Pipeline, gpu: Gpu, di
     own = planes.render(SETTINGS).image
     truth = planes.render(SETTINGS.with_(method="accumulation"), "test/truth").image
     wanted = overlays.error_map(gpu, own, truth, heat, "test/map").pixels()[..., :3]
-    assert (found[UNWRITTEN] == wanted[UNWRITTEN]).all() and np.ptp(wanted.astype(int)) > 20
-    assert (seen(planes, error_map=True, heat=heat)[:20] != found[:20]).sum() == 0
-    assert (found[:20] != wanted[:20]).any(), "its scale stands over it"
+    assert (found[:36] == wanted[:36]).all() and np.ptp(wanted[:36].astype(int)) > 20
+    assert (found[36:] != wanted[36:]).any(), "its scale stands over it"
 
 
 def test_what_is_in_focus_is_tinted_once_on_either_side_of_a_wipe(planes: Pipeline):

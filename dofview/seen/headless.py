@@ -29,7 +29,7 @@ def picture(pipeline: Pipeline, settings: Settings, seen: Seen, *, linear: bool 
     if seen.in_focus:
         frame = pipeline.frame(settings, guard=method(settings.method).GUARD_BAND)
         overlay = overlays.in_focus(gpu, frame, size, seen.band, "seen/focus band")
-    found = layers(gpu, seen, settings.method, shown, size, overlay)
+    found = layers(gpu, seen, able, shown, size, overlay)
     canvas = compose(gpu, found, size, "seen once", linear=linear)
     gpu.targets.collect()
     return canvas

@@ -13,7 +13,7 @@ PADDING = 0.3
 """Around a line, shares of the text's height."""
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=64)
 def drawn(lines: tuple[str, ...], text_px: float) -> tuple[np.ndarray, tuple[Box, ...]]:
     """`lines` below one another, (h, w, 4) uint8, and the box of each in it. Plain letters: the font has no others."""
     from PIL import Image, ImageDraw, ImageFont

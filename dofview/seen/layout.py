@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from dofview.gl.compose import Box, Layer, Part
 from dofview.gl.context import Gpu
@@ -18,39 +18,41 @@ LEGEND_EM = 20.0
 
 
 def layers(
-    gpu: Gpu, seen: Seen, own: str, pictures: Mapping[str, Image], size: tuple[int, int], overlay: Image | None = None
+    gpu: Gpu, seen: Seen, names: Sequence[str], pictures: Mapping[str, Image], size: tuple[int, int],
+    overlay: Image | None = None,
 ) -> list[Layer]:  # fmt: skip
-    """What is seen on a canvas of `size` when `own` is in use.
+    """What is seen on a canvas of `size`: a place for each of `names`, the one in use first unless they are a grid.
 
-    `pictures` are those of `Seen.names` that are there, as they are to be shown; `overlay` is laid over each.
+    `pictures` are as they are to be shown; the place of one that is not there yet stays empty. `overlay` is laid over
+    each.
     """
-    names = [name for name in seen.names(own) if name in pictures]
     canvas = Box(0, 0, *size)
     found: list[Layer] = []
     words = Words(gpu, seen.text_px)
-    if seen.arrangement is Arrangement.GRID:
-        for name, box in zip(names, cells(len(names), canvas), strict=True):
-            found.append(Layer(pictures[name], box, seen.part, label=name))
-            words.put(method(name).TITLE, box, foot=True)
+    boxes = cells(len(names), canvas) if seen.arrangement is Arrangement.GRID else []
+    if boxes:
+        for name, box in zip(names, boxes, strict=False):
+            found += [Layer(pictures[name], box, seen.part, label=name)] if name in pictures else []
+            words.put(_title(name, box.width, seen.text_px), box, foot=True)
     else:
         line = round(seen.split * size[0])
+        halves = (Box(0, 0, line, size[1]), Box(line, 0, size[0] - line, size[1]))
         for number, name in enumerate(names):
-            halves = (Box(0, 0, line, size[1]), Box(line, 0, size[0] - line, size[1]))
             within = halves[number] if len(names) == 2 else canvas
-            found.append(Layer(pictures[name], canvas, seen.part, within, name))
+            found += [Layer(pictures[name], canvas, seen.part, within, name)] if name in pictures else []
     if overlay is not None:
         found += [layer._replace(image=overlay, label="") for layer in found]
     if seen.arrangement is Arrangement.WIPE and len(names) == 2:
         found += _line(line, size)
-        words.put(method(names[0]).TITLE, Box(0, 0, line, size[1]), foot=True, right=True)
-        words.put(method(names[1]).TITLE, Box(line, 0, size[0] - line, size[1]), foot=True)
+        for name, half, right in zip(names, halves, (True, False), strict=True):
+            words.put(_title(name, half.width, seen.text_px), half, foot=True, right=right)
     if any(seen.covers(name) for name in names):
-        found += _legend(gpu, seen, words, size)
+        found += _legend(gpu, seen, words, _legend_room(seen, canvas, boxes, len(names)))
     return found + words.layers()
 
 
 def cells(count: int, canvas: Box) -> list[Box]:
-    """Boxes of a grid, each with the proportions of the canvas, in the middle of it."""
+    """Boxes of a grid with the proportions of the canvas, in its middle: `count` and those that are left empty."""
     columns = max(math.ceil(math.sqrt(count)), 1)
     rows = max(math.ceil(count / columns), 1)
     share = max(columns, rows)
@@ -58,7 +60,7 @@ def cells(count: int, canvas: Box) -> list[Box]:
     left, top = (canvas.width - columns * width) // 2, (canvas.height - rows * height) // 2
     return [
         Box(left + number % columns * width, top + number // columns * height,
-            max(width - GAP_PX, 1), max(height - GAP_PX, 1)) for number in range(count)
+            max(width - GAP_PX, 1), max(height - GAP_PX, 1)) for number in range(columns * rows)
     ]  # fmt: skip
 
 
@@ -94,17 +96,40 @@ def _line(x: int, size: tuple[int, int]) -> list[Layer]:
     return [Layer(SHADE, Box(x - 1, 0, 3, size[1])), Layer(WHITE, Box(x, 0, 1, size[1]))]
 
 
-def _legend(gpu: Gpu, seen: Seen, words: Words, size: tuple[int, int]) -> list[Layer]:
-    """The scale of an error map in the upper right corner, with its ends and what it measures in words."""
+def _title(name: str, width: int, text_px: float) -> str:
+    """The method's title, or its short name where that does not fit."""
+    title = method(name).TITLE
+    return title if labels.drawn((title,), text_px)[1][0].width + text_px <= width else name
+
+
+def _legend_room(seen: Seen, canvas: Box, boxes: list[Box], used: int) -> Box:
+    """Where the scale of an error map may be, in its lower left: the top of what a grid leaves empty, else all of the
+    canvas above the names."""
+    if len(boxes) > used:
+        first, last = boxes[used], boxes[-1]
+        height = min(_legend_height(seen.text_px), first.height)
+        return Box(first.left, first.top, last.left + last.width - first.left, height)
+    names = labels.line_height(seen.text_px) if seen.arrangement is Arrangement.WIPE else 0
+    return canvas._replace(height=canvas.height - names)
+
+
+def _legend_height(em: float) -> int:
+    """Pixels that the scale takes with what is around it."""
+    return 2 * labels.line_height(em) + round(0.9 * em) + 3 * round(0.4 * em) + 2 * round(0.5 * em)
+
+
+def _legend(gpu: Gpu, seen: Seen, words: Words, within: Box) -> list[Layer]:
+    """The scale of an error map in the lower left corner of `within`, with its ends and what it measures in words."""
     em, line = seen.text_px, labels.line_height(seen.text_px)
-    margin = round(0.8 * em)
-    width, bar = min(round(LEGEND_EM * em), size[0] - 2 * margin), round(0.9 * em)
-    room = Box(size[0] - margin - width, margin, width, 2 * line + bar + 3 * round(0.4 * em))
+    margin = round(0.5 * em)
+    width, bar = min(round(LEGEND_EM * em), within.width - 2 * margin), round(0.9 * em)
+    height = _legend_height(em) - 2 * margin
+    room = Box(within.left + margin, within.top + within.height - margin - height, width, height).cut(within)
     end = 1.0 / seen.heat.gain
     signed = seen.heat.difference is Difference.SIGNED
     words.put(f"{seen.heat.difference.value} error against the reference", room)
     words.put(f"-{end:.3g}" if signed else "0", room, foot=True)
     words.put(f"{'+' if signed else ''}{end:.3g}", room, foot=True, right=True)
     inset = round(0.7 * em)
-    place = Box(room.left + inset, room.top + line + round(0.6 * em), room.width - 2 * inset, bar)
-    return [Layer(DARK, room), Layer(overlays.scale(gpu, seen.heat), place)]
+    place = Box(room.left + inset, room.top + line + round(0.6 * em), max(room.width - 2 * inset, 1), bar)
+    return [Layer(DARK, room), Layer(overlays.scale(gpu, seen.heat), place, within=room)]

@@ -64,6 +64,8 @@ class App:
         self.panels_shown: bool = True
         self.panels_focused = False
         self.asking_for_path = False
+        self.sought = ""
+        """Title of a panel to be opened and scrolled to."""
         self.quitting = False
         self.when_drawn: list[Callable[[np.ndarray], None]] = []
         """Called once by the window with what it shows, (h, w, 4) uint8."""

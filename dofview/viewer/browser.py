@@ -38,7 +38,7 @@ class Browser(Tool):
     def actions(self) -> tuple[Action, ...]:
         return (
             Action("Images of the method", int(imgui.Key.i), "I", "Show the images the method makes on its way.",
-                   lambda app: self._toggle(), "Compare"),
+                   self._toggle, "Compare"),
         )  # fmt: skip
 
     def images(self, app: App) -> dict[str, Image]:
@@ -121,14 +121,17 @@ class Browser(Tool):
             channels = list(Channel)[: shape.components + 1]
             chosen = min(channels.index(self.inspect.channel) if self.inspect.channel in channels else 0, len(channels))
             changes["channel"] = channels[imgui.combo("channel##channel", chosen, [c.value for c in channels])[1]]
+            if changes["channel"] is Channel.COLOUR:
+                changes["light"] = imgui.checkbox("as light, with the sRGB curve##light", self.inspect.light)[1]
         speed = 0.005 * max(abs(self.inspect.high - self.inspect.low), 1e-6)
         changes["low"] = imgui.drag_float("black##low", self.inspect.low, speed, format="%.4g")[1]
         changes["high"] = imgui.drag_float("white##high", self.inspect.high, speed, format="%.4g")[1]
         self.inspect = self.inspect.model_copy(update=changes)
         self._fit |= imgui.button("fit the range##fit")
 
-    def _toggle(self) -> None:
+    def _toggle(self, app: App) -> None:
         self.on = not self.on
+        app.sought = self.title if self.on else ""
 
 
 def groups(names: list[str]) -> dict[str, list[str]]:

@@ -29,7 +29,7 @@ class Heat(Tool):
     def actions(self) -> tuple[Action, ...]:
         return (
             Action("Error map", int(imgui.Key.e), "E", "Show where the picture differs from the reference.",
-                   lambda app: self._toggle(), "Compare"),
+                   self._toggle, "Compare"),
         )  # fmt: skip
 
     def covers(self, name: str) -> bool:
@@ -45,5 +45,6 @@ class Heat(Tool):
         self.on = imgui.checkbox("error against the reference##heat", self.on)[1]
         self.settings = edit(self.settings)
 
-    def _toggle(self) -> None:
+    def _toggle(self, app: App) -> None:
         self.on = not self.on
+        app.sought = self.title if self.on else ""

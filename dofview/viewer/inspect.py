@@ -31,6 +31,8 @@ class Inspect(BaseModel):
     high: float = 1.0
     channel: Channel = Channel.COLOUR
     layer: int = 0
+    light: bool = True
+    """Colours are linear light and shown with the sRGB curve, as pictures are; single channels are numbers."""
 
 
 def develop(gpu: Gpu, image: Image, inspect: Inspect, name: str) -> Image:

@@ -79,6 +79,7 @@ class Judge(Tool):
             app.report("the reference is not judged by itself; choose another method")
         elif not self.running:
             self.wanted, self.done = True, 0
+            app.sought = self.title
 
     def cancel(self) -> None:
         """Leave it."""

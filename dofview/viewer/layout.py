@@ -14,7 +14,7 @@ from dofview.viewer import panels, viewport
 if TYPE_CHECKING:
     from dofview.viewer.app import App
 
-PANEL_WIDTH_EM = 26.0
+PANEL_WIDTH_EM, LABEL_EM = 26.0, 9.5
 FIXED = (
     imgui.WindowFlags_.no_move | imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_collapse
     | imgui.WindowFlags_.no_saved_settings | imgui.WindowFlags_.no_bring_to_front_on_focus
@@ -39,8 +39,11 @@ def draw(app: App) -> None:
         imgui.set_next_window_size((panel, height))
         imgui.begin("settings", None, FIXED | imgui.WindowFlags_.no_title_bar)
         app.panels_focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows)
-        imgui.push_item_width(-9.5 * imgui.get_font_size())
+        # A narrow panel of large text cuts names off before controls.
+        imgui.push_item_width(-min(LABEL_EM * imgui.get_font_size(), 0.55 * panel))
+        imgui.push_text_wrap_pos(0.0)
         _panels(app)
+        imgui.pop_text_wrap_pos()
         imgui.pop_item_width()
         imgui.end()
 
@@ -51,12 +54,16 @@ def _panels(app: App) -> None:
     _panel("Picture", True, lambda: _edit(app, panels.picture_panel(app.settings)))
     for tool in app.tools:
         if tool.title:
-            _panel(tool.title, tool.opened, partial(tool.panel, app))
+            _panel(tool.title, tool.opened, partial(tool.panel, app), sought=app.sought == tool.title)
     _panel("Scene", False, lambda: panels.scene_panel(app.scene))
+    app.sought = ""
 
 
-def _panel(title: str, opened: bool, content: Callable[[], None]) -> None:
-    """A heading that folds; what stands under two of them may be called the same."""
+def _panel(title: str, opened: bool, content: Callable[[], None], sought: bool = False) -> None:
+    """A heading that folds; what stands under two of them may be called the same. A `sought` one comes into view."""
+    if sought:
+        imgui.set_next_item_open(True)
+        imgui.set_scroll_here_y(0.0)
     if imgui.collapsing_header(title, imgui.TreeNodeFlags_.default_open if opened else 0):
         imgui.push_id(title)
         content()

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 from imgui_bundle import imgui
 
 from dofview.lens import Lens, Photographic, depth_of_field, focal_px, hyperfocal_distance
 from dofview.methods import METHODS, method
+from dofview.metrics import srgb_decode, srgb_encode
+from dofview.render.environment import SKY, STUDIO, Lighting
 from dofview.scene.model import Scene
 from dofview.settings import Settings
-from dofview.viewer.widgets import edit
+from dofview.viewer.widgets import edit, plain
 
 SENSOR_HEIGHT_MM = 24.0
 
@@ -64,12 +67,34 @@ def _depth_of_field_text(lens: Lens, settings: Settings) -> None:
 
 
 def picture_panel(settings: Settings) -> Settings:
-    """Resolution and display."""
+    """Resolution, display, light and background."""
     image = edit(settings.image, only=("scale",))
     display = edit(settings.display, ranges={"exposure_ev": (-6.0, 6.0)})
     if image != settings.image or display != settings.display:
         settings = settings.with_(image=image, display=display)
-    return settings
+    return _background(_light(settings))
+
+
+def _light(settings: Settings) -> Settings:
+    """What lights the scene: the built-in ones, and the picture that was dropped."""
+    now = settings.light.environment
+    choices = [SKY, STUDIO, *([now] if now not in (SKY, STUDIO) else [])]
+    names = [plain(Path(choice).name) for choice in choices]
+    chosen = choices[imgui.combo("light##environment", choices.index(now), names)[1]]
+    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        imgui.set_tooltip("A picture all around is dropped on the window: .hdr or .exr.")
+    return settings if chosen == now else settings.with_(light=Lighting(environment=chosen))
+
+
+def _background(settings: Settings) -> Settings:
+    """The colour where nothing is, as it is seen; brighter than white is what a view file may say."""
+    shown = [float(x) for x in srgb_encode(np.asarray(settings.background_linear))]
+    changed, colour = imgui.color_edit3("background##background", shown, imgui.ColorEditFlags_.float)
+    if imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
+        imgui.set_tooltip("Colour where nothing is.")
+    if not changed:
+        return settings
+    return settings.with_(background_linear=tuple(float(x) for x in srgb_decode(np.clip(colour, 0.0, 1.0))))
 
 
 def scene_panel(scene: Scene) -> None:

@@ -34,14 +34,16 @@ class Pictures(Tool):
         return (kept is None or kept[0] != key or kept[1] is not image) and key != self._failed
 
     def linear(self, app: App, name: str, *, late: bool = False) -> Image | None:
-        """The picture as linear light; None when it cannot be rendered. With `late` the last one does, if there is."""
+        """The picture as linear light; None when it cannot be rendered. With `late` nothing is rendered: the last one
+        does, if it still lives."""
         if name == app.settings.method:
             return app.result.image if app.result else None
         if name == REFERENCE:
             return app.tool(Truth).picture(app)
-        if self.outdated(app, name) and not (late and name in self._linear):
+        if self.outdated(app, name) and not late:
             self._render(app, name)
-        return self._linear[name][1] if name in self._linear else None
+        kept = self._linear.get(name)
+        return kept[1] if kept is not None and kept[1] in app.gpu.targets else None
 
     def shown(self, app: App, name: str, *, late: bool = False) -> Image | None:
         """The same as it is shown: developed, or as a map of its error."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from dofview.gl.compose import WHOLE, Box, Layer, compose, fit
 from dofview.gl.targets import Image
+from dofview.methods import method
 from dofview.seen.layout import layers
 from dofview.seen.model import Seen
 from dofview.viewer.browser import Browser
@@ -111,4 +112,7 @@ def layers_of(app: App, seen: Seen, own: str, pictures: dict[str, Image]) -> lis
     inspected = browser.shown(app)
     if inspected is not None:
         return [Layer(inspected, fit(inspected.size, Box(0, 0, *size)), seen.part, label=browser.name)]
-    return layers(app.gpu, seen, own, pictures, size, app.tool(Focusing).overlay)
+    names = [name for name in seen.names(own) if app.gpu.version_code >= method(name).REQUIRES_GL]
+    # The second of two is waited for; a grid has a place for what is still to come.
+    names = names if len(names) > 2 else [name for name in names if name in pictures]
+    return layers(app.gpu, seen, names, pictures, size, app.tool(Focusing).overlay)

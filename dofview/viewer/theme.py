@@ -24,7 +24,7 @@ LIGHT = {
     "scrollbar_grab_hovered": 0xA4ADB9, "scrollbar_grab_active": 0x8B95A3, "check_mark": 0x1F66B5,
     "slider_grab": 0x5F9BDD, "slider_grab_active": 0x2F77C6, "button": 0xCFE0F4, "button_hovered": 0xB8D2F0,
     "button_active": 0x9DC1EA, "header": 0xDCE4EE, "header_hovered": 0xC6D8EE, "header_active": 0xAFCBEA,
-    "separator": 0xB4BBC5, "plot_histogram": 0x2F77C6, "plot_lines": 0x1F66B5, "table_header_bg": 0xE3E6EA,
+    "separator": 0xB4BBC5, "plot_histogram": 0x9DC1EA, "plot_lines": 0x1F66B5, "table_header_bg": 0xE3E6EA,
     "table_border_light": 0xD3D8DF, "table_row_bg": 0xF2F3F5, "table_row_bg_alt": 0xE8EBEF, "text_link": 0x1F66B5,
     "nav_cursor": 0xC25A00, "text_selected_bg": 0xA9CDF5, "input_text_cursor": 0x1A1D21,
 }  # fmt: skip

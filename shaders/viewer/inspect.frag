@@ -1,5 +1,6 @@
 // One channel, or three, of any image as grey or colour between the ends of a range; not-a-number is magenta. With VALUE
 // the target is one texel, and holds what the image holds at `texel`, unchanged.
+#include "include/srgb.glsl"
 #include <Inspect>
 
 #if defined(INTEGER) && defined(LAYERED)
@@ -35,6 +36,7 @@ void main()
 #else
     vec3 value = inspect.channel == CHANNEL_COLOUR ? found.rgb : vec3(found[max(inspect.channel - 1, 0)]);
     value = (value - inspect.low) / (inspect.high - inspect.low);
-    color = vec4(any(isnan(value)) ? NOT_A_NUMBER : clamp(value, 0.0, 1.0), 1.0);
+    bool light = inspect.light != 0 && inspect.channel == CHANNEL_COLOUR;
+    color = vec4(any(isnan(value)) ? NOT_A_NUMBER : light ? srgb_encode(value) : clamp(value, 0.0, 1.0), 1.0);
 #endif
 }

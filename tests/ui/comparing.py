@@ -146,6 +146,16 @@ def grid(context: Context, app: App, host: Host) -> None:
     until(context, lambda: not any(pictures.outdated(app, name) for name in METHODS), "every picture follows")
     assert app.scene_renders - renders >= len(METHODS) - 1
     assert len(app.gpu.targets.named("compare/")) >= 2 * (len(METHODS) - 2)
+    press(context, "e")
+    until(context, lambda: app.tool(Truth).quality.views > 4, "maps of all")
+    for _ in range(2):
+        # The window is another size: no picture of the old one is used.
+        press(context, "h")
+        context.yield_(8)
+    until(context, lambda: not any(pictures.outdated(app, name) for name in METHODS), "every picture in the new size")
+    context.yield_(2)
+    assert [placed.label for placed in app.placed] == list(METHODS)
+    press(context, "e")
     press(context, "k")
     rests(context, app, "after the grid")
 
@@ -235,7 +245,12 @@ def browser(context: Context, app: App, host: Host) -> None:
         for image in images:
             tool.choose(image)
             context.yield_(2)
-            assert app.placed[0].label == image and tool.inspect.high > tool.inspect.low, (image, name, tool.inspect)
+            assert app.placed[0].label == image and tool.inspect.high > tool.inspect.low, (
+                image,
+                name,
+                app.placed,
+                tool.inspect,
+            )
     rests(context, app, "the browser")
     app.settings = app.settings.with_(method="mipmap")
     until(context, lambda: app.settings.method == "mipmap" and not app.busy, "back")

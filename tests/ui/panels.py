@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 from host import Context, Host, drive
+from imgui_bundle import imgui
 
 from dofview.methods import METHODS
 from dofview.viewer.app import App
+from dofview.viewer.browser import Browser
+from dofview.viewer.compare import Compare
+from dofview.viewer.heat import Heat
 from dofview.viewer.measure import Measure
 
 
@@ -46,6 +50,9 @@ def use(context: Context, app: App, host: Host) -> None:
     assert quality.views > 0 and np.isfinite(quality.self_psnr)
     context.item_uncheck("**/compare with the reference##measuring")
 
+    light_and_background(context, app, host)
+    what_is_asked_for_comes_into_view(context, app)
+
     camera = app.settings.camera
     context.set_ref("")
     context.mouse_move_to_pos((150, 200))
@@ -68,6 +75,54 @@ def use(context: Context, app: App, host: Host) -> None:
     assert "no such file.glb" in app.message and app.scene.triangle_count == 8, "the last good scene stays"
 
 
+def light_and_background(context: Context, app: App, host: Host) -> None:
+    """The scene is lit by another light, and stands before another colour, as chosen in the panel."""
+    before, sky = app.settings, host.pixels(context)
+    for folded in ("Lens", "Method"):
+        context.item_close(folded)
+    renders = app.scene_renders
+    _choose(context, "Picture/light##environment", "down_arrow")
+    assert app.settings.light.environment == "studio", (app.message, list(app.said)[-3:])
+    assert app.scene_renders > renders, "these planes shine by themselves: it is rendered, and looks the same"
+    _choose(context, "Picture/light##environment", "up_arrow")
+    assert (host.pixels(context) == sky).all()
+    for channel in range(3):
+        context.item_input_value(f"Picture/background##background/##{'XYZ'[channel]}", (0.8, 0.4, 0.2)[channel])
+    context.yield_(3)
+    shown = host.pixels(context)
+    assert np.abs(shown - np.array([204.0, 102.0, 51.0])).max(axis=2).min() <= 1.0, "it is shown as it was chosen"
+    app.settings = before
+    for folded in ("Lens", "Method"):
+        context.item_open(folded)
+    context.yield_(2)
+
+
+def what_is_asked_for_comes_into_view(context: Context, app: App) -> None:
+    """A key that shows something opens the panel of it, and the panels scroll to it."""
+    context.set_ref("settings")
+    inside = {Heat: "gain##gain", Compare: "with##other", Browser: "in place of the picture##inspect"}
+    for key, tool in (("e", Heat), ("w", Compare), ("i", Browser)):
+        context.scroll_to_top("")
+        context.item_close(tool.title)
+        context.scroll_to_top("")
+        for _ in range(2):
+            context.key_press(_key(key))
+            context.yield_(4)
+            assert context.item_info(f"{tool.title}/{inside[tool]}").rect_clipped.get_height() > 5.0, tool.title
+        context.item_close(tool.title)
+    context.scroll_to_top("")
+    context.yield_(2)
+
+
+def _choose(context: Context, combo: str, arrow: str) -> None:
+    """Take the next or the last choice of a combo, by keyboard."""
+    context.item_click(combo)
+    context.yield_(4)
+    for key in (arrow, "enter"):
+        context.key_press(_key(key))
+        context.yield_(3)
+
+
 def _title(name: str) -> str:
     from dofview.methods import method
 
@@ -75,8 +130,6 @@ def _title(name: str) -> str:
 
 
 def _key(name: str) -> int:
-    from imgui_bundle import imgui
-
     return int(getattr(imgui.Key, name))
 
 
