@@ -9,30 +9,46 @@ Processing. VMV 2006. M. Kraus: The Pull-Push Algorithm Revisited. GRAPP 2009.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from dofview.gl.context import Gpu
 from dofview.gl.passes import Blocks, Textures, draw
 from dofview.gl.pyramids import Size, level_size, most_levels
+from dofview.gl.shaders import Defines
 from dofview.gl.targets import Image
+from dofview.gl.tiles import Tiles
 
 KNOWN = "pass/known.glsl"
 Pair = tuple[Image, Image]
 
 
+class Part(NamedTuple):
+    """A part of level 0, the whole when `within` is None: what the file that says what is known reads there."""
+
+    within: Tiles | None
+    textures: Textures
+    defines: Defines = {}
+
+
 def pull_push(
-    gpu: Gpu, name: str, size: Size, known: str = KNOWN, *, textures: Textures, blocks: Blocks | None = None,
-    values: Mapping[str, object] | None = None, defines: Mapping[str, object] | None = None,
+    gpu: Gpu, name: str, size: Size, known: str = KNOWN, *, parts: Sequence[Part], blocks: Blocks | None = None,
+    values: Mapping[str, object] | None = None,
 ) -> Pair:  # fmt: skip
     """Return the filled level 1 over an image of `size`: colours times weight with the weight in alpha, and one more
     value times it. Level 0 is `pass/push.frag`, or a shader that does its work on the way.
 
-    `known` names the GLSL file that says what level 0 knows (`pass/pull.frag`); `textures`, `blocks`, `values`
-    and `defines` are what it reads. The weight of a level is 0 only where nothing at all is known.
+    `known` names the GLSL file that says what level 0 knows (`pass/pull.frag`), in each of its `parts` and nothing
+    elsewhere; `blocks` and `values` are what it reads. The weight of a level is 0 only where nothing at all is known.
     """
     top = max(most_levels(size), 1)
     pulled = [_pair(gpu, f"{name} pulled", size, level) for level in range(1, top + 1)]
-    _pull(gpu, size, pulled[0], known, textures, blocks or {}, values or {}, defines or {})
+    for number, part in enumerate(parts):
+        within = part.within.at(1) if part.within else None
+        _pull(
+            gpu, size, pulled[0], known, part.textures, blocks or {}, values or {}, part.defines, within=within,
+            clear=number == 0 and within is not None,
+        )  # fmt: skip
     for level in range(2, top + 1):
         source = dict(zip(("colors", "extras"), pulled[level - 2], strict=True))
         _pull(gpu, level_size(size, level - 1), pulled[level - 1], KNOWN, source, {}, {}, {})
@@ -48,18 +64,18 @@ def pull_push(
 def fill(gpu: Gpu, colors: Image, extras: Image, into: Pair, name: str) -> None:
     """Write `colors` (times weight, weight in alpha) and `extras` (times weight) to `into` with their holes filled."""
     own = {"colors": colors, "extras": extras}
-    coarse = pull_push(gpu, name, colors.size, textures=own)
+    coarse = pull_push(gpu, name, colors.size, parts=[Part(None, own)])
     above = dict(zip(("coarse_colors", "coarse_extras"), coarse, strict=True))
     draw(gpu, "pass/push.frag", into, textures={**own, **above}, defines={"KNOWN": KNOWN})
 
 
 def _pull(
     gpu: Gpu, fine_size: Size, into: Pair, known: str, textures: Textures, blocks: Blocks, values: Mapping[str, object],
-    defines: Mapping[str, object],
+    defines: Defines, *, within: Tiles | None = None, clear: bool = False,
 ) -> None:  # fmt: skip
     draw(
         gpu, "pass/pull.frag", into, textures=textures, blocks=blocks, values={**values, "fine_size": fine_size},
-        defines={**defines, "KNOWN": known},
+        defines={**defines, "KNOWN": known}, within=within, clear=clear,
     )  # fmt: skip
 
 

@@ -58,14 +58,20 @@ def grown(mask: np.ndarray, by: int) -> np.ndarray:
 
 
 def rectangles(masks: np.ndarray) -> list[np.ndarray]:
-    """Cover the tiles of each of `masks` (n, rows, columns) by disjoint rectangles, (k, 4) float32 px: runs of a row.
+    """Cover the tiles of each of `masks` (n, rows, columns) by disjoint rectangles, (k, 4) float32 px: runs of a row,
+    joined with the same ones of the rows after it, because a rasteriser takes longer over many small ones.
 
     The last ones may reach beyond the image."""
     edges = np.diff(masks.astype(np.int8), axis=2, prepend=0, append=0)
     which, row, start = np.nonzero(edges > 0)
     end = np.nonzero(edges < 0)[2]
-    corners = np.stack([start, row, end, row + 1], axis=1).astype(np.float32) * TILE
-    return np.split(corners, np.searchsorted(which, np.arange(1, len(masks))))
+    order = np.lexsort((row, end, start, which))
+    which, row, start, end = which[order], row[order], start[order], end[order]
+    same = (which[1:] == which[:-1]) & (start[1:] == start[:-1]) & (end[1:] == end[:-1]) & (row[1:] == row[:-1] + 1)
+    first = np.flatnonzero(np.r_[True, ~same][: len(row)])
+    last = np.flatnonzero(np.r_[~same, True][: len(row)])
+    corners = np.stack([start[first], row[first], end[first], row[last] + 1], axis=1).astype(np.float32) * TILE
+    return np.split(corners, np.searchsorted(which[first], np.arange(1, len(masks))))
 
 
 def upload(targets: TargetPool, name: str, masks: Sequence[np.ndarray], size: tuple[int, int]) -> list[Tiles | None]:

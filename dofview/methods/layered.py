@@ -16,6 +16,7 @@ from enum import StrEnum
 from pydantic import Field
 
 from dofview.gl.targets import Image
+from dofview.methods.layered_final import final
 from dofview.methods.layered_peels import Peels
 from dofview.methods.layered_plan import LEAST_RADIUS, Plan, plan, recursive, spaced, step_for
 from dofview.methods.layered_side import Side
@@ -111,13 +112,12 @@ def render(frame: Frame, params: Params) -> Image:
     count("layered layers empty", len(slices) - len(filled))
 
     # Blurred and blended, farthest from the focus first, then put together.
-    buffers = {}
+    buffers, skip = {}, params.skip and may_skip("layered tiles skipped")
     for name, layers in (("front", filled.front), ("back", filled.back)):
         if layers:
-            skip = params.skip and may_skip("layered tiles skipped")
             side = Side(known, name, layers, skip=skip, inspect=params.inspect)
             buffers[name] = side.cascaded() if params.cascaded else side.separate()
-    return known.final(filled.focus, buffers, fill=params.fill and not known.complete)
+    return final(known, filled.focus, buffers, fill=params.fill and not known.complete, skip=skip)
 
 
 def layout(frame: Frame, params: Params) -> Plan:

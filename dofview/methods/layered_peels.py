@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from dofview.gl.pull_push import pull_push
 from dofview.gl.targets import Image
-from dofview.methods.layered_plan import FAR, Layer
+from dofview.methods.layered_plan import Layer
 from dofview.methods.layered_regions import CELL, SLICES, Content, Window
 from dofview.methods.method import Recipe
 from dofview.render.frame import Surfaces
 
 Color = tuple[float, float, float, float]
+
+COMMON = 2
+"""Peels that much of a picture has surfaces in; those behind them are looked at only in the tiles where they matter."""
 
 NOTHING: Color = (0.0, 0.0, 0.0, 0.0)
 
@@ -36,65 +38,46 @@ class Peels:
         self.depths = self._pack(peels)
         guard, size = self.frame.guard, self.frame.inner_size
         self.window = Window(guard, guard, guard + size[0], guard + size[1])
-        self.textures = {f"color{m}": surfaces.color for m, surfaces in enumerate(peels)} | self.depths
+        self.colors = [surfaces.color for surfaces in peels]
         self.nearest = peels[0].inverse_depth
+        self.sky: dict[str, Image] = {}
         self.content = self._content(visible and not (exhausted and paper))
         if visible and not paper:
             self.defines |= {"SKY": 1, "CELL": CELL, **({"EXHAUSTED": 1} if exhausted else {})}
-            self.textures["sky_distance"] = self._sky_distance()
+            self.sky = {"sky_distance": self._sky_distance()}
 
     def draw(
         self, shader: str, into: Image, layer: Layer, *, values: dict | None = None, reach: float = 0.0,
-        images: Mapping[str, Image] | None = None, **how: Any,
+        images: Mapping[str, Image] | None = None, peels: int | None = None, **how: Any,
     ) -> None:  # fmt: skip
-        """Run a shader that includes `matte.glsl` for `layer`, whose filter reaches `reach` px."""
+        """Run a shader that includes `matte.glsl` for `layer`, whose filter reaches `reach` px; where no more than
+        `peels` surfaces are behind one another, only they are looked at."""
         presence = {"PRESENCE": 1} if reach > 0.0 and "PAPER" not in self.defines else {}
-        how["defines"] = {**self._defines(layer), **presence, **how.get("defines", {})}
-        values = {"start": self.start, **(values or {}), **self._values(layer)} | ({"reach": reach} if presence else {})
-        textures = {**self.textures, **(images or {})}
+        how["defines"] = {**self.defined(layer, peels), **presence, **how.get("defines", {})}
+        values = {"start": self.start, **(values or {}), **self.values(layer)} | ({"reach": reach} if presence else {})
+        textures = {**self.textures(layer, peels), **(images or {})}
         if presence:
             textures["depths_nearest"] = self.nearest
             how["samplers"] = {**how.get("samplers", {}), "depths_nearest": self.recipe.gpu.linear}
         self.recipe.draw(shader, into, values=values, images=textures, **how)
 
-    def _defines(self, layer: Layer) -> dict[str, object]:
+    def textures(self, layer: Layer, peels: int | None = None) -> dict[str, Image]:
+        """What `matte.glsl` reads of the first `peels` surfaces, or of all."""
+        count = len(self.colors) if peels is None else peels
+        depths = {name: image for name, image in self.depths.items() if count > 4 or name != "depths_last"}
+        colors = {f"color{m}": color for m, color in enumerate(self.colors[:count])}
+        return colors | depths | (self.sky if layer.farthest else {})
+
+    def defined(self, layer: Layer, peels: int | None = None) -> dict[str, object]:
         """Of the layers, only the farthest has to do with the background."""
-        unused = () if layer.anchors[3] == -FAR else ("SKY", "EXHAUSTED")
-        return {name: value for name, value in self.defines.items() if name not in unused}
+        unused = () if layer.farthest else ("SKY", "EXHAUSTED")
+        found = {name: value for name, value in self.defines.items() if name not in unused}
+        return found if peels is None else found | {"PEELS": peels}
 
-    def final(self, focus: Layer, sides: dict[str, Image], *, fill: bool) -> Image:
-        """Front buffer over the layer in focus over the back buffer, normalised."""
-        defines = {f"HAS_{side.upper()}": 1 for side in sides}
-        if fill:
-            sides = sides | {"filled": self._filled(focus, sides.get("back"))}
-            defines["FILL"] = 1
-        picture = self.recipe.image("picture")
-        guard = self.frame.guard
-        self.draw(
-            "final.frag", picture, focus, defines=defines, viewport=(guard, guard, *self.frame.inner_size), images=sides
-        )
-        return picture
-
-    def _filled(self, focus: Layer, back: Image | None) -> Image:
-        """Half the size: what is behind the front buffer, its holes filled from around them."""
-        # Two surfaces of a pixel are enough to make up a third from.
-        count = min(2, int(str(self.defines["PEELS"])))
-        unused = {f"color{m}" for m in range(count, 8)} | {"depths_last"}
-        textures = {name: image for name, image in self.textures.items() if name not in unused}
-        textures |= {"back": back} if back else {}
-        defines = self._defines(focus) | {"PEELS": count, **({"HAS_BACK": 1} if back else {})}
-        if count < int(str(self.defines["PEELS"])):
-            defines.pop("EXHAUSTED", None)
-        with self.recipe.gpu.profile.section("layered/fill"):
-            filled, _ = pull_push(
-                self.recipe.gpu, "layered/fill", self.frame.size, "methods/layered/known.glsl", textures=textures,
-                blocks=self.recipe.blocks, values={**self._values(focus), "window": tuple(self.window)},
-                defines=defines,
-            )  # fmt: skip
-        return filled
-
-    def _values(self, layer: Layer) -> dict[str, object]:
-        return {"anchors": layer.anchors, "background": self.background}
+    def values(self, layer: Layer) -> dict[str, object]:
+        width, height = self.frame.size
+        pixel = (1.0 / width, 1.0 / height)
+        return {"anchors": layer.anchors, "background": self.background, "pixel_size": pixel}
 
     def _pack(self, peels: Sequence[Surfaces]) -> dict[str, Image]:
         """Inverse depths of up to four peels in each texel."""
@@ -120,18 +103,27 @@ class Peels:
 
     def _content(self, background_counts: bool) -> Content:
         """Where surfaces are, cell by cell. Read back once per geometry key."""
-        key = (self.frame.geometry_key, "layered content", self.defines["PEELS"], background_counts)
+        count = len(self.colors)
+        key = (self.frame.geometry_key, "layered content", count, background_counts)
         if key not in self.frame.cache.values:
-            depths, size = self.frame.depth_range(), self.frame.size
-            extent = depths.nearest - depths.farthest_surface
-            slices = SLICES / extent if extent > 0.0 else 0.0
-            shape = (-(-size[0] // CELL), -(-size[1] // CELL))
-            images = [
-                self.recipe.image("content", shape, dtype="u4"), self.recipe.image("content extremes", shape),
-                self.recipe.image("content sky", shape, 1),
-            ]  # fmt: skip
-            values = {"nearest": depths.nearest, "slices_per_depth": slices, "background_counts": background_counts}
-            defines = {"CELL": CELL, "PEELS": self.defines["PEELS"]}
-            self.recipe.draw("content.frag", images, defines=defines, values=values, images=self.depths)
-            self.frame.cache.values[key] = Content(depths.nearest, slices, *(image.pixels()[::-1] for image in images))
+            deep = self._content_of(COMMON, count, background_counts) if count > COMMON else None
+            self.frame.cache.values[key] = self._content_of(0, min(count, COMMON), background_counts, deep)
         return self.frame.cache.values[key]  # type: ignore[return-value]
+
+    def _content_of(
+        self, first: int, to: int, background_counts: bool, deep: Content | None = None
+    ) -> Content:  # fmt: skip
+        """That of the peels from `first` up to, and without, `to`."""
+        depths, size = self.frame.depth_range(), self.frame.size
+        extent = depths.nearest - depths.farthest_surface
+        slices = SLICES / extent if extent > 0.0 else 0.0
+        shape = (-(-size[0] // CELL), -(-size[1] // CELL))
+        images = [
+            self.recipe.image("content", shape, dtype="u4"), self.recipe.image("content extremes", shape),
+            self.recipe.image("content sky", shape, 1),
+        ]  # fmt: skip
+        values = {"nearest": depths.nearest, "slices_per_depth": slices, "background_counts": background_counts}
+        defines = {"CELL": CELL, "FIRST": first, "PEELS": to}
+        self.recipe.draw("content.frag", images, defines=defines, values=values, images=self.depths)
+        bits, extremes, sky = (image.pixels()[::-1] for image in images)
+        return Content(depths.nearest, slices, bits, extremes, sky, deep)

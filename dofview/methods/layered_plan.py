@@ -43,6 +43,11 @@ class Layer:
     level: int = 0
     reach: float = 0.0
 
+    @property
+    def farthest(self) -> bool:
+        """Whether the background belongs to it, which a pixel has behind its last surface."""
+        return self.anchors[3] == -FAR
+
 
 @dataclass(frozen=True)
 class Plan:

@@ -35,12 +35,12 @@ class Content:
 
     Made of the two images of `content.frag`: `bits` (rows, columns, 4) uint32, nearest slice first, and `extremes`
     (rows, columns, 4), the greatest and least 1/z in the first slice of a cell and in the last; and of `sky`, 1 where
-    background can be seen.
+    background can be seen. Peels that hold little have a content of their own, `deep`.
     """
 
     def __init__(
         self, nearest: float, slices_per_depth: float, bits: np.ndarray, extremes: np.ndarray,
-        sky: np.ndarray | None = None,
+        sky: np.ndarray | None = None, deep: Content | None = None,
     ):  # fmt: skip
         self.nearest = nearest
         self.slices_per_depth = slices_per_depth
@@ -48,6 +48,7 @@ class Content:
         self._extremes = [np.ascontiguousarray(extremes[..., i], np.float64) for i in range(4)]
         self.shape = bits.shape[:2]
         self._sky = np.zeros(self.shape, bool) if sky is None else sky[..., 0] > 0.0
+        self._deep = deep
 
     def cells(self, layer: Layer) -> np.ndarray:
         """The cells that may have something of `layer`, (rows, columns) bool: its interval, and those it shares."""
@@ -62,7 +63,14 @@ class Content:
         for number, word in enumerate(self._words):
             if wanted >> 32 * number & 0xFFFFFFFF:
                 found |= (word & np.uint32(wanted >> 32 * number & 0xFFFFFFFF)) != 0
-        return found
+        return found | self._deep.cells(layer) if self._deep else found
+
+    def deep(self, layer: Layer) -> np.ndarray:
+        """The tiles where the peels that hold little may have something of `layer`, (rows, columns) bool; all for the
+        farthest layer, as the background is in it, which a pixel has behind its last surface."""
+        if self._deep and not layer.farthest:
+            return tiled(self._deep.cells(layer))
+        return np.ones_like(tiled(self._sky))
 
     def sky_distance(self) -> np.ndarray:
         """How far the background is that can be seen, px, (rows, columns) float32; along the axes or diagonals, up to

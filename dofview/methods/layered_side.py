@@ -13,7 +13,7 @@ from dofview.gl.passes import ADD, OVER, UNDER
 from dofview.gl.pyramids import expand, level_size, reduce
 from dofview.gl.targets import Image
 from dofview.gl.tiles import Tiles, grown, upload
-from dofview.methods.layered_peels import NOTHING, Color, Peels
+from dofview.methods.layered_peels import COMMON, NOTHING, Color, Peels
 from dofview.methods.layered_plan import Layer
 from dofview.methods.layered_regions import Step, steps
 
@@ -135,12 +135,14 @@ class Side:
             defines |= {"SOURCE": 1, "TAPS": len(weights)} if across else {"SOURCE": 3}
         if defines["SOURCE"] == 1:
             values["weights"] = np.array(weights, np.float32).tobytes()
-        target = self._emptied(places.own) if added else into
-        self.peels.draw(
-            "join.frag", target, layer, reach=layer.reach * (step.sigma > 0.0), defines=defines, values=values,
-            within=places.own, clear=not added and self._clear(into), images={"buffered": before} if before else None,
-            samplers={"buffered": self.gpu.nearest} if defines["SOURCE"] in (1, 2) else {},
-        )  # fmt: skip
+        target, clear = (self._emptied(places.own), False) if added else (into, self._clear(into))
+        samplers = {"buffered": self.gpu.nearest} if defines["SOURCE"] in (1, 2) else {}
+        for number, (peels, tiles) in enumerate(places.kinds):
+            self.peels.draw(
+                "join.frag", target, layer, reach=layer.reach * (step.sigma > 0.0), defines=defines, values=values,
+                within=tiles, clear=clear if number == 0 else False, images={"buffered": before} if before else None,
+                samplers=samplers, peels=peels,
+            )  # fmt: skip
         if added:
             self._reduce(target, layer.level, into, places.near, ADD if self.name == "front" or alone else OVER)
 
@@ -204,16 +206,32 @@ class Side:
         return self.recipe.image(name, level_size(self.recipe.frame.size, level), linear=True)
 
     def _upload(self, plan: Sequence[Step]) -> list[Places]:
+        count = len(self.peels.colors)
+        kinds = [self._kinds(step, count) for step in plan]
         masks = [mask for step in plan for mask in _masks(step)]
         self.gpu.profile.count("layered tiles skipped", sum(int((~mask).sum()) for mask in masks))
-        tiles = upload(self.gpu.targets, f"layered/{self.name} tiles", masks, self.recipe.frame.size)
-        count = len(Places._fields)
-        return [Places(*tiles[start : start + count]) for start in range(0, len(tiles), count)]
+        masks += [where for found in kinds for _, where in found]
+        tiles = iter(upload(self.gpu.targets, f"layered/{self.name} tiles", masks, self.recipe.frame.size))
+        main = [[next(tiles) for _ in range(len(Places._fields) - 1)] for _ in plan]
+        return [
+            Places([(peels, next(tiles)) for peels, _ in found], *lists)
+            for found, lists in zip(kinds, main, strict=True)
+        ]
+
+    def _kinds(self, step: Step, count: int) -> list[tuple[int, np.ndarray]]:
+        """The tiles that the layer joins in, by how many of its `count` peels have to be looked at. Too long a list is
+        drawn everywhere; those that look at more come later, so they are drawn over it."""
+        deep = self.peels.content.deep(step.layer)
+        if not self.skip or count <= COMMON or deep.all():
+            return [(count, step.own)]
+        return [(COMMON, step.own & ~deep), (count, step.own & deep)]
 
 
 class Places(NamedTuple):
-    """Where the passes of a step are drawn, as `Step` has it; filters along y and changes of size read beyond that."""
+    """Where the passes of a step are drawn, as `Step` has it; filters along y and changes of size read beyond that. Of
+    `kinds`, the tiles `own` by the surfaces that are looked at there, together they are all."""
 
+    kinds: list[tuple[int, Tiles | None]]
     own: Tiles | None
     near: Tiles | None
     others: Tiles | None
@@ -225,7 +243,7 @@ class Places(NamedTuple):
 
 
 def _masks(step: Step) -> list[np.ndarray]:
-    """Those of `Places`."""
+    """Those of `Places` but for the kinds."""
     near, around = grown(step.own, 1), grown(step.finished, 1)
     return [step.own, near, step.others, step.after, step.finished, around, grown(around, 1), step.rest]
 

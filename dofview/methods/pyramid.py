@@ -10,7 +10,7 @@ from enum import StrEnum
 
 from pydantic import Field
 
-from dofview.gl.pull_push import pull_push
+from dofview.gl.pull_push import Part, pull_push
 from dofview.gl.pyramids import Analysis, blur, most_levels, pyramid
 from dofview.gl.targets import Image
 from dofview.methods.method import Params as BaseParams
@@ -134,8 +134,8 @@ def _matted(recipe: Recipe, params: Params, sub: SubImage) -> Image:
     if sub.fills or not params.skip or not profile.may_skip("pyramid fills skipped"):
         with profile.section("pyramid/fill"):
             pair = pull_push(
-                recipe.gpu, "pyramid/fill", recipe.frame.size, CULLED, textures=images, blocks=recipe.blocks,
-                values=culling,
+                recipe.gpu, "pyramid/fill", recipe.frame.size, CULLED, parts=[Part(None, images)],
+                blocks=recipe.blocks, values=culling,
             )  # fmt: skip
         filled = dict(zip(("coarse_colors", "coarse_extras"), pair, strict=True))
     profile.count("pyramid fills" if filled else "pyramid fills skipped")

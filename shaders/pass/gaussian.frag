@@ -1,5 +1,6 @@
 // One direction of a separable filter, with weights from dofview/gl/gaussian.py. The number of taps is a constant so that
-// the loop is unrolled; without BILINEAR the sampler takes the nearest texel. Beyond the border the last texel is repeated, coverage included: what is constant stays so.
+// the loop is unrolled. Without BILINEAR the sampler takes the nearest texel; a software rasteriser does that faster than
+// texelFetch. Beyond the border the last texel is repeated, coverage included: what is constant stays so.
 uniform sampler2D source;
 uniform ivec2 axis;
 #ifdef BILINEAR

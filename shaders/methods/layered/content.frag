@@ -1,6 +1,6 @@
 // Where the surfaces of a cell of CELL x CELL pixels are in depth: 128 slices, a bit each, evenly in 1/z from the nearest
 // surface of the picture to the farthest. Of the cell's own first and last slice, which often hold one thin surface alone,
-// the extremes are known instead, and their bits are not set.
+// the extremes are known instead, and their bits are not set. Of the peels those from FIRST on count.
 #include "include/texel.glsl"
 
 uniform sampler2D depths_first;
@@ -43,7 +43,7 @@ void main()
             depths = texel_of(depths_last, ivec2(x, y));
             for (int m = 0; m < 4; ++m) inverse_depths[4 + m] = depths[m];
 #endif
-            for (int m = 0; m < PEELS; ++m) {
+            for (int m = FIRST; m < PEELS; ++m) {
                 float z = inverse_depths[m];
                 if (z < least) continue;
                 uint slice = slice_of(z);

@@ -1,7 +1,12 @@
 // Front buffer over the layer in focus over the back buffer. Where no peel knew what is behind, and on steep surfaces between
 // layers, coverage is below 1: the rest is FILLed from what is known behind the front buffer, or what is there is divided
-// by its coverage (GPU Pro 4, p. 206).
+// by its coverage (GPU Pro 4, p. 206). Where nothing is in focus, all the layer in focus is EMPTY.
+#include "methods/layered/place.glsl"
+#ifdef EMPTY
+uniform vec4 background;
+#else
 #include "methods/layered/matte.glsl"
+#endif
 
 #ifdef HAS_FRONT
 uniform sampler2D front;
@@ -18,15 +23,17 @@ out vec4 color;
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec2 place = gl_FragCoord.xy * pixel_size;
 #ifdef HAS_FRONT
-    vec4 sum = texel_of(front, pixel);
+    vec4 sum = textureLod(front, place, 0.0);
 #else
     vec4 sum = vec4(0.0);
 #endif
-    sum = under(sum, pixel);
+#ifndef EMPTY
+    sum = under(sum, place);
+#endif
 #ifdef HAS_BACK
-    sum += max(1.0 - sum.a, 0.0) * texel_of(back, pixel);
+    sum += max(1.0 - sum.a, 0.0) * textureLod(back, place, 0.0);
 #else
     sum += max(1.0 - sum.a, 0.0) * start;
 #endif

@@ -16,34 +16,34 @@ uniform float weights[TAPS];
 
 out vec4 color;
 
-vec4 before(ivec2 texel)
+vec4 before()
 {
 #if SOURCE == 0
     return start;
 #elif SOURCE == 1
-    vec2 size = 1.0 / vec2(textureSize(buffered, 0)), place = gl_FragCoord.xy * size, along = vec2(0.0, size.y);
+    vec2 place = gl_FragCoord.xy * pixel_size, along = vec2(0.0, pixel_size.y);
     vec4 sum = weights[0] * textureLod(buffered, place, 0.0);
     for (int i = 1; i < TAPS; ++i)
         sum += weights[i]
             * (textureLod(buffered, place - float(i) * along, 0.0) + textureLod(buffered, place + float(i) * along, 0.0));
     return sum;
 #elif SOURCE == 2
-    return texel_of(buffered, texel >> LEVEL);
+    return textureLod(buffered, gl_FragCoord.xy / (float(1 << LEVEL) * vec2(textureSize(buffered, 0))), 0.0);
 #elif SOURCE == 3
     return texture(buffered, gl_FragCoord.xy * 0.5 / vec2(textureSize(buffered, 0)));
 #endif
 }
 
-vec4 joined(vec4 buffer, ivec2 pixel)
+vec4 joined(vec4 buffer, vec2 place)
 {
 #ifdef FRONT
 #ifdef ADDED
-    return under(buffer, pixel) - buffer;
+    return under(buffer, place) - buffer;
 #else
-    return under(buffer, pixel);
+    return under(buffer, place);
 #endif
 #else
-    vec4 nearer = layer(pixel);
+    vec4 nearer = layer(place);
 #ifdef ADDED
     return nearer;
 #else
@@ -54,6 +54,5 @@ vec4 joined(vec4 buffer, ivec2 pixel)
 
 void main()
 {
-    ivec2 texel = ivec2(gl_FragCoord.xy);
-    color = joined(before(texel), texel);
+    color = joined(before(), gl_FragCoord.xy * pixel_size);
 }

@@ -13,7 +13,7 @@
 // PAPER: anchors lie half way between layers; omega and omega-dot as printed. The tail is whole in front too and lies
 // under its own head, which widens every silhouette by a part of the blur between two layers.
 #include "include/lens.glsl"
-#include "include/texel.glsl"
+#include "methods/layered/place.glsl"
 
 const float MARGIN = 1e-5;
 
@@ -67,42 +67,42 @@ struct Surface
 #ifdef SKY
 // How much of the background behind a surface counts: all near where it is seen, nothing where the surface's blur cannot
 // let it through. On steep surfaces, where layers do not quite close, it would shine through all the same.
-float shining(ivec2 pixel, float inverse_depth)
+float shining(vec2 place, float inverse_depth)
 {
-    vec2 place = (vec2(pixel) + 0.5) / (float(CELL) * vec2(textureSize(sky_distance, 0)));
+    vec2 cells = place / (float(CELL) * pixel_size * vec2(textureSize(sky_distance, 0)));
     float sigma = lens.sigma * abs(coc_radius(inverse_depth));
-    return 1.0 - smoothstep(1.5, 3.0, texture(sky_distance, place).r / max(sigma, 1.0));
+    return 1.0 - smoothstep(1.5, 3.0, texture(sky_distance, cells).r / max(sigma, 1.0));
 }
 #endif
 
-void fetch_surfaces(ivec2 pixel, out Surface surfaces[COUNT])
+void fetch_surfaces(vec2 place, out Surface surfaces[COUNT])
 {
     float inverse_depths[9];
-    vec4 depths = texel_of(depths_first, pixel), colors[COUNT];
+    vec4 depths = textureLod(depths_first, place, 0.0), colors[COUNT];
     for (int i = 0; i < 4; ++i) inverse_depths[i] = depths[i];
-    colors[0] = texel_of(color0, pixel);
+    colors[0] = textureLod(color0, place, 0.0);
 #if PEELS > 1
-    colors[1] = texel_of(color1, pixel);
+    colors[1] = textureLod(color1, place, 0.0);
 #endif
 #if PEELS > 2
-    colors[2] = texel_of(color2, pixel);
+    colors[2] = textureLod(color2, place, 0.0);
 #endif
 #if PEELS > 3
-    colors[3] = texel_of(color3, pixel);
+    colors[3] = textureLod(color3, place, 0.0);
 #endif
 #if PEELS > 4
-    depths = texel_of(depths_last, pixel);
+    depths = textureLod(depths_last, place, 0.0);
     for (int i = 0; i < 4; ++i) inverse_depths[4 + i] = depths[i];
-    colors[4] = texel_of(color4, pixel);
+    colors[4] = textureLod(color4, place, 0.0);
 #endif
 #if PEELS > 5
-    colors[5] = texel_of(color5, pixel);
+    colors[5] = textureLod(color5, place, 0.0);
 #endif
 #if PEELS > 6
-    colors[6] = texel_of(color6, pixel);
+    colors[6] = textureLod(color6, place, 0.0);
 #endif
 #if PEELS > 7
-    colors[7] = texel_of(color7, pixel);
+    colors[7] = textureLod(color7, place, 0.0);
 #endif
     // Behind the last surface of a pixel is the background, which is known.
     vec4 behind_all = vec4(background.rgb, 1.0) * background.a;
@@ -113,7 +113,7 @@ void fetch_surfaces(ivec2 pixel, out Surface surfaces[COUNT])
     for (int m = 0; m < COUNT; ++m) {
         surfaces[m] = Surface(inverse_depths[m], inverse_depths[m] > 0.0 ? vec4(colors[m].rgb, 1.0) : behind_all);
 #ifdef SKY
-        if (m == 0) behind_all *= shining(pixel, inverse_depths[0]);
+        if (m == 0) behind_all *= shining(place, inverse_depths[0]);
 #endif
     }
 }
@@ -142,13 +142,12 @@ float tail(float inverse_depth, float before)
 // 1 inside a surface, towards 0 where what is around a pixel lies farther than it by a quarter of the interval. A steep
 // surface is no border: what lies farther on one side of the pixel and as much nearer on the other belongs to it, since
 // 1/z of a plane is linear in the picture.
-float presence(ivec2 pixel, float inverse_depth)
+float presence(vec2 place, float inverse_depth)
 {
     const vec2 around[4] = vec2[4](vec2(1.0, 0.0), vec2(0.7, 0.7), vec2(0.0, 1.0), vec2(-0.7, 0.7));
-    vec2 texel = 1.0 / vec2(textureSize(depths_nearest, 0)), place = (vec2(pixel) + 0.5) * texel;
     float quarter = max(0.25 * (anchors.y - anchors.z), 1e-37), missing = 0.0;
     for (int i = 0; i < 4; ++i) {
-        vec2 apart = reach * around[i] * texel;
+        vec2 apart = reach * around[i] * pixel_size;
         vec2 farther = (inverse_depth
             - vec2(texture(depths_nearest, place + apart).r, texture(depths_nearest, place - apart).r)) / quarter;
         vec2 alone = clamp(farther, 0.0, 1.0);
@@ -161,7 +160,7 @@ float presence(ivec2 pixel, float inverse_depth)
 
 // How present the first surface of the tail's interval is; what comes behind it in there has a share of 0 or 1. Asked
 // once for all surfaces of a pixel, because a software rasteriser runs both sides of every branch.
-float first_presence(ivec2 pixel, Surface surfaces[COUNT])
+float first_presence(vec2 place, Surface surfaces[COUNT])
 {
 #ifdef PRESENCE
     float before = 3e38, first = 0.0;
@@ -169,7 +168,7 @@ float first_presence(ivec2 pixel, Surface surfaces[COUNT])
         if (before >= anchors.y) first = surfaces[m].inverse_depth;
         before = surfaces[m].inverse_depth;
     }
-    return presence(pixel, first);
+    return presence(place, first);
 #else
     return 1.0;
 #endif
@@ -182,12 +181,12 @@ float covering(float share, float present)
 }
 
 // The layer by itself, premultiplied.
-vec4 layer(ivec2 pixel)
+vec4 layer(vec2 place)
 {
     Surface surfaces[COUNT];
-    fetch_surfaces(pixel, surfaces);
+    fetch_surfaces(place, surfaces);
     vec4 sum = vec4(0.0);
-    float before = 3e38, present = first_presence(pixel, surfaces);
+    float before = 3e38, present = first_presence(place, surfaces);
     for (int m = 0; m < COUNT; ++m) {
         float z = surfaces[m].inverse_depth;
 #ifdef PAPER
@@ -204,13 +203,13 @@ vec4 layer(ivec2 pixel)
 }
 
 // The front buffer with this layer under it.
-vec4 under(vec4 front, ivec2 pixel)
+vec4 under(vec4 front, vec2 place)
 {
 #ifdef PAPER
-    return front + (1.0 - front.a) * layer(pixel);
+    return front + (1.0 - front.a) * layer(place);
 #else
     Surface surfaces[COUNT];
-    fetch_surfaces(pixel, surfaces);
+    fetch_surfaces(place, surfaces);
     float before = 3e38;
     for (int m = 0; m < COUNT; ++m) {
         float z = surfaces[m].inverse_depth, left = max(1.0 - front.a, 0.0);
