@@ -11,9 +11,11 @@ from dofview.framing import opening
 from dofview.gl.context import Gpu
 from dofview.methods import METHODS
 from dofview.pipeline import Pipeline
+from dofview.render.frame import FrameCache
+from dofview.render.guard import guard_band
 from dofview.render.raster import in_view
 from dofview.render.reference import Reference
-from dofview.render.upload import PIECE_TRIANGLES
+from dofview.render.upload import PIECE_TRIANGLES, GpuScene
 from dofview.scene.load import load
 from dofview.settings import Settings
 
@@ -80,3 +82,31 @@ def test_pieces_that_lie_together_are_drawn_at_once(rail: Pipeline):
 def covered(ranges: list[tuple[int, int, int]]) -> set[int]:
     """The triangles of `ranges`, by number."""
     return {triangle for _, first, count in ranges for triangle in range(first // 3, (first + count) // 3)}
+
+
+@pytest.mark.parametrize("name", ["foreground@20k", "background", "rail@20k", "highlights"])
+def test_the_guard_band_looks_only_at_what_may_be_nearest(gpu: Gpu, monkeypatch: pytest.MonkeyPatch, name: str):
+    """It comes out as wide as when everything is looked at, for lenses focused before, in and behind the scene."""
+    pipeline = Pipeline(gpu, load(f"demo:{name}"))
+    settings = opening(pipeline.scene.scene, f"demo:{name}").with_(image={"size": (320, 240)})
+    lenses = [
+        settings.lens.model_copy(update={"focus_distance": settings.lens.focus_distance * focus, "radius": radius})
+        for focus in (0.3, 1.0, 4.0)
+        for radius in (settings.lens.radius, 4.0 * settings.lens.radius)
+    ]
+
+    def widths() -> tuple[list[int], int]:
+        found, triangles = [], 0
+        for lens in lenses:
+            gpu.profile.begin()
+            found.append(guard_band(gpu, pipeline.scene, settings.camera, lens, (320, 240), FrameCache()))
+            triangles += gpu.profile.counts["triangles"]
+        return found, triangles
+
+    found, drawn = widths()
+    nothing_known = np.zeros, np.ones, lambda count: np.zeros(count, bool)
+    monkeypatch.setattr(GpuScene, "depths", lambda _, numbers, __: tuple(make(len(numbers)) for make in nothing_known))
+    everything, most = widths()
+    assert found == everything and len(set(found)) > 1
+    assert drawn < most or "@" not in name
+    pipeline.release()

@@ -31,23 +31,23 @@ def bind(gpu: Gpu, program: Program, textures: Textures, blocks: Blocks, values:
             raise KeyError(f"no sampler {name!r}; the shader declares {sorted(program.samplers)}")
         texture = image.texture if isinstance(image, Image) else image
         texture.use(unit)
-        if name in program.gl:
-            program.gl[name] = unit
-    missing = {name for name in program.samplers - textures.keys() if name in program.gl}
+        if name in program.members:
+            program.members[name].value = unit
+    missing = {name for name in program.samplers - textures.keys() if name in program.members}
     if missing:
         raise KeyError(f"samplers without an image: {sorted(missing)}")
     for name, value in values.items():
         if name not in program.values:
             raise KeyError(f"no uniform {name!r}; the shader declares {sorted(program.values)}")
-        if name not in program.gl:
+        if name not in program.members:
             continue
         if isinstance(value, bytes):
-            program.gl[name].write(value)
+            program.members[name].write(value)
         else:
-            program.gl[name] = value
+            program.members[name].value = value
     for binding, (name, block) in enumerate(blocks.items()):
-        if name in program.gl:
-            program.gl[name].binding = binding
+        if name in program.members:
+            program.members[name].binding = binding
             gpu.block(block_bytes(block)).bind_to_uniform_block(binding)
 
 

@@ -33,31 +33,31 @@ class Part(NamedTuple):
 
 def pull_push(
     gpu: Gpu, name: str, size: Size, known: str = KNOWN, *, parts: Sequence[Part], blocks: Blocks | None = None,
-    values: Mapping[str, object] | None = None,
-) -> Pair:  # fmt: skip
-    """Return the filled level 1 over an image of `size`: colours times weight with the weight in alpha, and one more
-    value times it. Level 0 is `pass/push.frag`, or a shader that does its work on the way.
+    values: Mapping[str, object] | None = None, extras: bool = True,
+) -> tuple[Image, ...]:  # fmt: skip
+    """Return the filled level 1 over an image of `size`: colours times weight with the weight in alpha and, with
+    `extras`, one more value times it. Level 0 is `pass/push.frag`, or a shader that does its work on the way.
 
     `known` names the GLSL file that says what level 0 knows (`pass/pull.frag`), in each of its `parts` and nothing
     elsewhere; `blocks` and `values` are what it reads. The weight of a level is 0 only where nothing at all is known.
     """
     top = max(most_levels(size), 1)
-    pulled = [_pair(gpu, f"{name} pulled", size, level) for level in range(1, top + 1)]
+    alone: Defines = {} if extras else {"COLOR_ALONE": 1}
+    pulled = [_images(gpu, f"{name} pulled", size, level, extras) for level in range(1, top + 1)]
     for number, part in enumerate(parts):
         within = part.within.at(1) if part.within else None
         _pull(
-            gpu, size, pulled[0], known, part.textures, blocks or {}, values or {}, part.defines, within=within,
-            clear=number == 0 and within is not None,
+            gpu, size, pulled[0], known, part.textures, blocks or {}, values or {}, {**part.defines, **alone},
+            within=within, clear=number == 0 and within is not None,
         )  # fmt: skip
     for level in range(2, top + 1):
-        source = dict(zip(("colors", "extras"), pulled[level - 2], strict=True))
-        _pull(gpu, level_size(size, level - 1), pulled[level - 1], KNOWN, source, {}, {}, {})
+        source = _named(("colors", "extras"), pulled[level - 2])
+        _pull(gpu, level_size(size, level - 1), pulled[level - 1], KNOWN, source, {}, {}, alone)
     filled = pulled[-1]
     for level in range(top - 1, 0, -1):
-        own = dict(zip(("colors", "extras"), pulled[level - 1], strict=True))
-        above = dict(zip(("coarse_colors", "coarse_extras"), filled, strict=True))
-        filled = _pair(gpu, f"{name} filled", size, level)
-        draw(gpu, "pass/push.frag", filled, textures={**own, **above}, defines={"KNOWN": KNOWN})
+        sources = _named(("colors", "extras"), pulled[level - 1]) | _named(("coarse_colors", "coarse_extras"), filled)
+        filled = _images(gpu, f"{name} filled", size, level, extras)
+        draw(gpu, "pass/push.frag", filled, textures=sources, defines={**alone, "KNOWN": KNOWN})
     return filled
 
 
@@ -65,13 +65,13 @@ def fill(gpu: Gpu, colors: Image, extras: Image, into: Pair, name: str) -> None:
     """Write `colors` (times weight, weight in alpha) and `extras` (times weight) to `into` with their holes filled."""
     own = {"colors": colors, "extras": extras}
     coarse = pull_push(gpu, name, colors.size, parts=[Part(None, own)])
-    above = dict(zip(("coarse_colors", "coarse_extras"), coarse, strict=True))
+    above = _named(("coarse_colors", "coarse_extras"), coarse)
     draw(gpu, "pass/push.frag", into, textures={**own, **above}, defines={"KNOWN": KNOWN})
 
 
 def _pull(
-    gpu: Gpu, fine_size: Size, into: Pair, known: str, textures: Textures, blocks: Blocks, values: Mapping[str, object],
-    defines: Defines, *, within: Tiles | None = None, clear: bool = False,
+    gpu: Gpu, fine_size: Size, into: Sequence[Image], known: str, textures: Textures, blocks: Blocks,
+    values: Mapping[str, object], defines: Defines, *, within: Tiles | None = None, clear: bool = False,
 ) -> None:  # fmt: skip
     draw(
         gpu, "pass/pull.frag", into, textures=textures, blocks=blocks, values={**values, "fine_size": fine_size},
@@ -79,9 +79,12 @@ def _pull(
     )  # fmt: skip
 
 
-def _pair(gpu: Gpu, name: str, size: Size, level: int) -> Pair:
+def _images(gpu: Gpu, name: str, size: Size, level: int, extras: bool) -> tuple[Image, ...]:
     shape = level_size(size, level)
-    return (
-        gpu.targets.image(f"{name} {level}", shape, linear=True),
-        gpu.targets.image(f"{name} extra {level}", shape, 1, linear=True),
-    )
+    color = gpu.targets.image(f"{name} {level}", shape, linear=True)
+    return (color, gpu.targets.image(f"{name} extra {level}", shape, 1, linear=True)) if extras else (color,)
+
+
+def _named(names: tuple[str, str], images: Sequence[Image]) -> dict[str, Image]:
+    """Images by name, the second only where it is there."""
+    return dict(zip(names, images, strict=False))

@@ -96,6 +96,8 @@ class Program:
     samplers: frozenset[str]
     values: frozenset[str]
     blocks: frozenset[str]
+    members: Mapping[str, Any]
+    """Uniforms, blocks and attributes that the compiler left, by name; `gl` would search for them every time."""
     arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)
 
     def release(self) -> None:
@@ -162,7 +164,7 @@ class ShaderLibrary:
         samplers = frozenset(name for kind, name in declared if "sampler" in kind)
         values = frozenset(name for kind, name in declared if "sampler" not in kind)
         names = frozenset(m["name"] for m in _BLOCK.finditer(text))
-        return Program(program, samplers, values, names)
+        return Program(program, samplers, values, names, {name: program[name] for name in program})
 
     def _source(self, path: str, defines: Defines, blocks: Mapping[str, str]) -> Source:
         """The text of one stage."""

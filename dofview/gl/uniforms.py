@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 from enum import Enum
-from functools import cache
+from functools import cache, lru_cache
 from typing import get_args, get_origin
 
 from pydantic import BaseModel
@@ -62,8 +62,9 @@ def block_glsl(model: type[BaseModel], name: str) -> str:
     return "\n".join([*lines, f"layout(std140) uniform {name}\n{{\n{members}}} {name.lower()};"])
 
 
+@lru_cache(maxsize=256)
 def block_bytes(values: BaseModel) -> bytes:
-    """The bytes of `values` in the layout of `block_glsl`, padded to 16."""
+    """The bytes of `values`, which is frozen, in the layout of `block_glsl`, padded to 16."""
     fields = _fields(type(values))
     if not fields:
         return b""

@@ -56,9 +56,10 @@ def _filled(peels: Peels, focus: Layer, back: Image | None, *, skip: bool) -> Im
             empty = {"EMPTY": 1, **({"HAS_BACK": 1} if back else {})}
             parts = [Part(lists[0], textures, defines), Part(lists[1], {"back": back} if back else {}, empty)]
     with peels.recipe.gpu.profile.section("layered/fill"):
-        filled, _ = pull_push(
+        (filled,) = pull_push(
             peels.recipe.gpu, "layered/fill", peels.frame.size, "methods/layered/known.glsl", parts=parts,
             blocks=peels.recipe.blocks, values={**peels.values(focus), "window": tuple(peels.window)},
+            extras=False,
         )  # fmt: skip
     return filled
 

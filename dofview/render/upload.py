@@ -69,6 +69,12 @@ class GpuScene:
             beyond &= [side.all(axis=1) for side in (x > w, x < -w, y > w, y < -w, w <= 0.0)]
         return np.flatnonzero(~beyond.any(axis=0))
 
+    def depths(self, numbers: np.ndarray, clip_from_local: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Depths of the nearest and the farthest corner of the boxes of the draws `numbers`, and whether all corners
+        are inside the picture."""
+        x, y, _, w = np.moveaxis(self._corners[numbers] @ clip_from_local.T, 2, 0)
+        return w.min(axis=1), w.max(axis=1), ((abs(x) <= w) & (abs(y) <= w)).all(axis=1)
+
     def runs(self, numbers: np.ndarray) -> list[tuple[int, int, int]]:
         """Material, first index and count of the draws `numbers`, ascending, those that lie together joined."""
         if not len(numbers):

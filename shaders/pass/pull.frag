@@ -10,7 +10,11 @@ uniform ivec2 fine_size;
 const float ENOUGH = 1.0;
 
 layout(location = 0) out vec4 color;
+#ifdef COLOR_ALONE
+float extra;
+#else
 layout(location = 1) out float extra;
+#endif
 
 void main()
 {

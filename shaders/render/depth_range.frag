@@ -1,5 +1,7 @@
 // Least and greatest inverse depth in blocks of BLOCK x BLOCK: x the least above zero, y the greatest, z 1 where any
 // texel is empty. The first level reads an inverse depth image (FIRST), the others the level before.
+#include "include/texel.glsl"
+
 uniform sampler2D source;
 
 out vec4 range;
@@ -12,7 +14,7 @@ void main()
     range = vec4(3e38, 0.0, 0.0, 0.0);
     for (int y = from.y; y < to.y; ++y)
         for (int x = from.x; x < to.x; ++x) {
-            vec3 texel = texelFetch(source, ivec2(x, y), 0).xyz;
+            vec3 texel = texel_of(source, ivec2(x, y)).xyz;
 #ifdef FIRST
             texel = vec3(texel.x > 0.0 ? texel.x : 3e38, texel.x, texel.x > 0.0 ? 0.0 : 1.0);
 #endif
