@@ -20,6 +20,7 @@ from dofview.methods.multiview_cones import NO_CONES, Cones, average
 from dofview.methods.multiview_culling import Culling, Mask, mask
 from dofview.methods.multiview_layers import (
     MOST_LAYERS,
+    TILE,
     Kind,
     Layering,
     Layers,
@@ -120,7 +121,7 @@ def render(frame: Frame, params: Params) -> Image:
     layers, points = build(recipe, kind), lens_points(frame, params)
     # Noise moves a sample within the square that is its share of the disc.
     noise = math.sqrt(math.pi / params.samples) if params.jitter is Jitter.NOISE else 0.0
-    cones = average(recipe, layers, params.cone_width / math.sqrt(params.samples)) if params.cones else NO_CONES
+    cones = average(recipe, layers, _cone_radius(params)) if params.cones else NO_CONES
     culling = params.culling if recipe.gpu.profile.may_skip("multiview layers skipped") else Culling.OFF
     reach = mask(recipe, culling, layers, float(np.abs(points).max()) + noise / 2, cones.footprint)
     result = recipe.image("result")
@@ -141,14 +142,32 @@ def lens_points(frame: Frame, params: Params) -> np.ndarray:
     key = _points_key(frame, params)
     if key not in frame.cache.values:
         if params.jitter is Jitter.HALTON:
-            frame.cache.values[key] = on_lens(frame.lens, halton(2 * params.samples))
+            points = on_lens(frame.lens, halton(2 * params.samples))
         else:
-            frame.cache.values[key] = lens_samples(frame.lens, params.samples, progressive=False, symmetric=True)
+            points = lens_samples(frame.lens, params.samples, progressive=False, symmetric=True)
+        frame.cache.values[key] = drawn_in(points, _cone_radius(params))
     return frame.cache.values[key]  # type: ignore[return-value]
 
 
+def drawn_in(points: np.ndarray, cone_radius: float) -> np.ndarray:
+    """Draw lens samples in until their cones spread light as far, in mean square, as the points alone did.
+
+    A bilinear fetch of squares as wide as the cone's radius spreads by a quarter of its square along each axis.
+    """
+    # Rounded, so that what is symmetric stays so.
+    middle = np.round(points.mean(axis=0), 9)
+    spread = float(np.mean((points - middle) ** 2))
+    kept = max(1.0 - 0.25 * cone_radius**2 / spread, 0.0) if spread > 0.0 else 0.0
+    return middle + math.sqrt(kept) * (points - middle)
+
+
+def _cone_radius(params: Params) -> float:
+    """The paper's λ: the radius of a cone, CoC radii."""
+    return params.cone_width / math.sqrt(params.samples) if params.cones else 0.0
+
+
 def _points_key(frame: Frame, params: Params) -> tuple:
-    return "multiview/lens points", frame.lens, params.samples, params.jitter is Jitter.HALTON
+    return "multiview/lens points", frame.lens, params.samples, params.jitter is Jitter.HALTON, _cone_radius(params)
 
 
 def _trace(
@@ -156,9 +175,19 @@ def _trace(
 ) -> None:  # fmt: skip
     frame, light = recipe.frame, shading(recipe.frame, layers)
     textures: dict[str, AnyTexture] = {**layers.images, **cones.images, **light.textures}
-    textures |= {"mask": reach.image, "noise": _noise(recipe), "lens_points": _points(recipe, params)}
+    textures |= {
+        "mask": reach.image,
+        "tile_mask": reach.tiles,
+        "noise": _noise(recipe),
+        "lens_points": _points(recipe, params),
+    }
     # What decides on code is compiled in: a software rasteriser runs both sides of every branch.
-    options = {"PROBES": params.probes, "CONES": params.cones, "JITTER": list(Jitter).index(params.jitter)}
+    options = {
+        "PROBES": params.probes,
+        "CONES": params.cones,
+        "TILE": TILE,
+        "JITTER": list(Jitter).index(params.jitter),
+    }
     recipe.draw(
         "trace.frag", into, blocks={**light.blocks, "Slabs": layers.slabs}, images=textures,
         defines={**options, **light.defines},

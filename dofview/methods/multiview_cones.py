@@ -39,7 +39,6 @@ def average(recipe: Recipe, layers: Layers, width: float) -> Cones:
     layer holds anything are drawn.
     """
     frame, slabs, width = recipe.frame, layers.slabs, width * layers.detail
-    sources = {name: image for name, image in layers.images.items() if name != "layer_inverse_depth"}
     color = layers.images["layer_color"]
     images = {
         name: recipe.image(f"{name.replace('_', ' ')} in cones", color.size, *kind, True, color.shape.layers)
@@ -53,7 +52,7 @@ def average(recipe: Recipe, layers: Layers, width: float) -> Cones:
         with recipe.gpu.profile.section("multiview/cones"):
             draw(
                 recipe.gpu, "methods/multiview/cones.frag", tuple(images.values()),
-                textures={**sources, **light.textures, "tiles": layers.tiles},
+                textures={**layers.images, **light.textures, "tiles": layers.tiles},
                 blocks={**recipe.blocks, **light.blocks, "Slabs": slabs}, clear=True,
                 vertex="methods/multiview/cones.vert", geometry="methods/multiview/cones.geom",
                 sprites=-(-across * down // 2), defines={**light.defines, "PATCH": PATCH, "TILE": TILE},

@@ -26,10 +26,11 @@ class Culling(StrEnum):
 
 
 class Mask(NamedTuple):
-    """Bits per layer in texels of 2^`shift` by 2^`shift` pixels."""
+    """Bits per layer in texels of 2^`shift` by 2^`shift` pixels; `tiles` are those found by tiles in any case."""
 
     image: Image
     shift: int
+    tiles: Image
 
 
 def mask(recipe: Recipe, culling: Culling, layers: Layers, extent: float, footprint: np.ndarray) -> Mask:
@@ -39,13 +40,14 @@ def mask(recipe: Recipe, culling: Culling, layers: Layers, extent: float, footpr
     layer, pixels, (slabs.count,).
     """
     reach = reach_px(recipe, layers.slabs, extent, footprint)
+    tiles = _by_tiles(recipe, layers, reach)
     match culling:
         case Culling.TILES:
-            found = Mask(_by_tiles(recipe, layers, reach), TILE.bit_length() - 1)
+            found = Mask(tiles, TILE.bit_length() - 1, tiles)
         case Culling.N_BUFFER:
-            found = Mask(_by_n_buffer(recipe, layers, reach), 0)
+            found = Mask(_by_n_buffer(recipe, layers, reach), 0, tiles)
         case _:
-            found = Mask(recipe.image("mask", (1, 1), components=1, dtype="u4"), 31)
+            found = Mask(recipe.image("mask", (1, 1), components=1, dtype="u4"), 31, tiles)
             found.image.write(np.full((1, 1, 1), (1 << layers.slabs.count) - 1, np.uint32))
     _count(recipe, layers, found.image)
     return found
@@ -66,7 +68,7 @@ def reach_px(recipe: Recipe, slabs: Slabs, extent: float, footprint: np.ndarray)
 
 def _by_tiles(recipe: Recipe, layers: Layers, reach: np.ndarray) -> Image:
     """Tiles of 4 by 4 pixels, each layer's bits spread by its own reach, along one axis and then the other."""
-    across, spread = (recipe.image(name, layers.tiles.size, 1, "u4") for name in ("tiles across", "mask"))
+    across, spread = (recipe.image(name, layers.tiles.size, 1, "u4") for name in ("tiles across", "tile mask"))
     tiles = -(-reach // TILE)
     # Bit k of texel d: whether layer k reaches d tiles far.
     reaching = (tiles[None, :] >= np.arange(tiles.max() + 1)[:, None]) @ (1 << np.arange(MOST_LAYERS, dtype=np.int64))

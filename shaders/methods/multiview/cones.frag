@@ -4,6 +4,7 @@
 #include "methods/multiview/grid.glsl"
 
 uniform sampler2DArray layer_color;
+uniform sampler2DArray layer_inverse_depth;
 #ifdef SURFACES
 uniform sampler2DArray layer_normal;
 uniform sampler2DArray layer_emissive;
@@ -39,9 +40,9 @@ void main()
             ivec3 texel = ivec3(x, y, slab);
             vec4 held = texelFetch(layer_color, texel, 0);
             whole += weight;
+            if (!slab_owns(slab, texelFetch(layer_inverse_depth, texel, 0).r)) continue;
             sums[0] += weight * held;
 #ifdef SURFACES
-            if (held.a == 0.0) continue;
             vec4 normal = texelFetch(layer_normal, texel, 0), emissive = texelFetch(layer_emissive, texel, 0);
             float open = texelFetch(layer_occlusion, texel, 0).r;
             vec3 light = lit(held, normal, emissive, open, -normalize(toward(vec2(x, y) + 0.5)));

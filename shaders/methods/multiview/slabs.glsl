@@ -19,3 +19,9 @@ bool slab_holds(int k, float inverse_depth)
     return (k == 0 || inverse_depth <= slab_front(k) + overlap)
         && (k + 1 == slabs.count || inverse_depth >= slab_back(k) - overlap);
 }
+
+// Whether it is layer `k` alone that counts a surface: its own, without the overlap.
+bool slab_owns(int k, float inverse_depth)
+{
+    return (k == 0 || inverse_depth < slab_front(k)) && (k + 1 == slabs.count || inverse_depth >= slab_back(k));
+}

@@ -7,7 +7,8 @@
 #include "methods/multiview/seen.glsl"
 #include "methods/multiview/heat.glsl"
 
-uniform usampler2D mask;
+uniform usampler2D mask;       // layers to walk
+uniform usampler2D tile_mask;  // layers with anything in reach, however walked: the picture is the same
 uniform sampler2D lens_points;
 uniform sampler2D noise;
 uniform float noise_width;  // how far it moves a lens sample in all, lens radii
@@ -16,6 +17,9 @@ uniform int mask_shift;
 uniform int guard;
 
 out vec4 color;
+
+const float MOST = 0.65;  // of a cone: with more, light gets through floors; with less, silhouettes grow
+const int NONE = 32;
 
 int lowest_bit(uint bits)
 {
@@ -28,13 +32,16 @@ int lowest_bit(uint bits)
 #endif
 }
 
-// What the ray meets, premultiplied by how much of it is stopped, by surfaces or by the background inside the canvas.
-vec4 ray(vec2 start, vec2 lens_point, uint layers)
+// What the ray meets, premultiplied by how much of it is stopped, by surfaces or by the background inside the canvas. It
+// walks `layers`; those that are `near` may hold something.
+vec4 ray(vec2 start, vec2 lens_point, uint layers, uint near)
 {
     vec4 met = vec4(0.0);
     uint left = layers;
     float depth = 0.0;
     vec3 at = vec3(start, 0.0);
+    int next = NONE;         // the layer behind the last that stopped a part of the cone, if anything is near in it,
+    vec2 there = vec2(0.0);  // and where that part is
     bool hit = false, more = layers != 0u;
     do {
         int k = max(lowest_bit(left), 0);
@@ -42,20 +49,28 @@ vec4 ray(vec2 start, vec2 lens_point, uint layers)
         vec2 a = ray_at(start, lens_point, front), b = ray_at(start, lens_point, back);
         bool found = intersect(k, front, back, a, b, t);
 #if CONES
-        // A ray that passes by what its cone touches: if a surface goes on in the next layer it is at the back of this one,
-        // if it began in the last at the front. Between that and the middle, which is right for all else, is best for both.
-        if (t < 0.0) t = met.a > 0.0 ? 0.25 : 0.75;
-#endif
+        // What a ray passes by, its cone may touch: rather towards the back, as a surface may go on in the next layer. There it
+        // is read at the same place, for only so what both cover adds up to all.
+        bool same = k == next && t < 0.25;
+        if (t < 0.0) t = same ? 0.0 : 0.75;
+        vec2 q = same ? there : mix(a, b, t);
+#else
         vec2 q = mix(a, b, t);
+#endif
         float inverse_depth = mix(front, back, t);
 #if CONES
-        // Around a ray that passes by, part of its cone may still be stopped. Layers share one surface more often than
-        // they hide each other, so what they cover adds up; where one ends and the next begins a little may be missing.
+        // Layers share one surface more often than they hide each other, so what they cover adds up. Their squares differ, and
+        // a little may be missing where one ends and the next begins: once that is passed, most of a cone is all of it.
         vec4 part = seen(q, k, inverse_depth, lens_point);
-        float enough = met.a > 0.0 ? 0.8 : 0.95;
-        found = part.a > 0.0 && on_canvas(q);
-        if (more && found) met += part * min(1.0, (1.0 - met.a) / part.a);
-        found = found && met.a > enough;
+        bool passed = k > next && met.a > MOST;
+        found = part.a > 0.0 && on_canvas(q) && !passed;
+        float enough = k == next ? MOST : 0.95;
+        if (more && found) {
+            met += part * min(1.0, (1.0 - met.a) / part.a);
+            next = (near >> (k + 1) & 1u) != 0u ? k + 1 : NONE;
+            there = q;
+        }
+        found = passed || met.a > enough;
 #endif
         if (more) {
             hit = found;
@@ -66,7 +81,7 @@ vec4 ray(vec2 start, vec2 lens_point, uint layers)
         }
     } while (more);
 #if CONES
-    if (hit) return met / met.a;
+    if (hit || (next < NONE && met.a > MOST)) return met / met.a;
 #else
     if (hit) return vec4(seen(at.xy, int(at.z), depth, lens_point).rgb, 1.0);
 #endif
@@ -94,14 +109,14 @@ void main()
     color = vec4(background, 1.0);
     // Nobody looks at the guard band of the result.
     if (any(lessThan(pixel, ivec2(guard))) || any(greaterThanEqual(pixel, size - guard))) return;
-    uint layers = texelFetch(mask, pixel >> mask_shift, 0).r;
+    uint layers = texelFetch(mask, pixel >> mask_shift, 0).r, near = texelFetch(tile_mask, pixel / TILE, 0).r;
     vec2 start = (gl_FragCoord.xy - detail_shift) * detail;
     vec4 random = texelFetch(noise, pixel & 63, 0), sum = vec4(0.0);
-    for (int i = 0; i < params.samples; ++i) sum += ray(start, lens_sample(i, random), layers);
+    for (int i = 0; i < params.samples; ++i) sum += ray(start, lens_sample(i, random), layers, near);
     if (params.show == SHOW_PROBES) {
         color = vec4(heat(float(probes_made) / float(8 * params.samples)), 1.0);
         return;
     }
-    if (sum.a <= 0.0) sum = ray(start, vec2(0.0), layers);
+    if (sum.a <= 0.0) sum = ray(start, vec2(0.0), layers, near);
     if (sum.a > 0.0) color = vec4(sum.rgb / sum.a, 1.0);
 }
