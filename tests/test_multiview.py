@@ -10,6 +10,7 @@ from scenes import noise_material, quad, scene_of, three_planes, unlit
 
 from dofview import metrics
 from dofview.gl.context import Gpu
+from dofview.gl.layered import DepthArray, NoLayersError
 from dofview.lens import Distribution, Lens
 from dofview.methods import multiview
 from dofview.methods.method import Recipe
@@ -61,6 +62,29 @@ def test_one_pass_fills_the_layers_as_one_pass_each_does(planes: Pipeline, surfa
         passes = image.pixels().astype(float)
         assert np.mean((passes != 0.0) != (exact[name] != 0.0)) <= 1e-5, name
         assert np.mean(np.abs(passes - exact[name]) > 1e-3 * np.abs(exact[name]).max()) <= 1e-5, name
+
+
+@pytest.mark.parametrize("lacks", ["functions", "framebuffers"])
+def test_a_driver_that_cannot_layer_draws_each_layer_by_itself(
+    planes: Pipeline, monkeypatch: pytest.MonkeyPatch, lacks: str
+):
+    def refused(*_: object) -> None:
+        raise NoLayersError("no")
+
+    exact = planes.render(SETTINGS.with_params(layers=7))
+    planes.forget()
+    # Another size, as framebuffers are kept.
+    settings = SETTINGS.with_params(layers=6)
+    passes = planes.render(settings.with_params(layering="passes"))
+    expected, drawn = passes.pixels(), passes.counts["geometry passes"]
+    planes.forget()
+    if lacks == "functions":
+        monkeypatch.setattr(DepthArray, "available", lambda _: False)
+    else:
+        monkeypatch.setattr(DepthArray, "attach", refused)
+    fallen = planes.render(settings)
+    assert np.array_equal(fallen.pixels(), expected)
+    assert fallen.counts["geometry passes"] == drawn > exact.counts["geometry passes"]
 
 
 def test_more_layers_than_one_invocation_writes(planes: Pipeline):
@@ -178,7 +202,7 @@ def test_moving_the_focus_draws_no_triangle(planes: Pipeline):
 
 
 def test_it_is_near_the_reference_and_nearer_with_more_rays(planes: Pipeline):
-    """The paper's 30.84 dB and SSIM 0.97 are the floor. From 32 rays on it is the layers' texels that limit this scene."""
+    """The paper's 30.84 dB and SSIM 0.97 are the floor. From 32 rays on the texels of the layers limit this scene."""
     truth = reference(planes, SETTINGS)
     picture = planes.render(SETTINGS).pixels()
     assert metrics.psnr(picture, truth) > 45.0 and metrics.ssim(picture, truth) > 0.98

@@ -32,6 +32,10 @@ _FUNCTIONS: dict[str, tuple[Any, ...]] = {
 }
 
 
+class NoLayersError(GLError):
+    """The driver has no framebuffer whose layers have a depth buffer each."""
+
+
 class DepthArray:
     """A 32-bit float depth buffer of `layers` images of `size`, for layered rendering."""
 
@@ -59,7 +63,7 @@ class DepthArray:
         self._gl["glBindFramebuffer"](_FRAMEBUFFER, framebuffer.glo)
         self._gl["glFramebufferTexture"](_FRAMEBUFFER, _DEPTH_ATTACHMENT, self.glo, 0)
         if self._gl["glCheckFramebufferStatus"](_FRAMEBUFFER) != _COMPLETE:
-            raise GLError("this driver has no framebuffers with a depth buffer per layer")
+            raise NoLayersError("this driver has no framebuffers with a depth buffer per layer")
         # moderngl takes a framebuffer made without depth for one that cannot be written, and would never clear it.
         framebuffer.depth_mask = True
 

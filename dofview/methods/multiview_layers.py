@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from dofview.gl.layered import DepthArray
+from dofview.gl.layered import DepthArray, NoLayersError
 from dofview.gl.passes import draw
 from dofview.gl.targets import Image
 from dofview.methods.method import Recipe
@@ -148,16 +148,15 @@ def affordable(frame: Frame, kind: Kind, most_bytes: float) -> Kind:
 def build(recipe: Recipe, kind: Kind) -> Layers:
     """Draw the scene into layers as `kind` says, unless they are there from an earlier frame."""
     frame, slabs = recipe.frame, kind.slabs
-    if not _can_layer(frame, slabs.count):
-        kind = kind._replace(layering=Layering.PASSES)
     images = images_of(recipe, kind, "")
     across, down = (-(-side // TILE) for side in frame.size)
     tiles = recipe.image("tiles", (across, down), components=1, dtype="u4")
     kept = [frame.cache.holds((frame.geometry_key, kind), image) for image in (*images.values(), tiles)]
     if not all(kept):
         if slabs.count:
+            once = kind.layering is not Layering.PASSES and _can_layer(frame, slabs.count, images)
             with recipe.gpu.profile.section("multiview/layers"):
-                _DRAW[kind.layering](recipe, kind, images)
+                _DRAW[kind.layering if once else Layering.PASSES](recipe, kind, images)
         occupied(recipe, slabs, images, tiles, TILE * kind.detail)
     return Layers(slabs, images, tiles, kind)
 
@@ -252,7 +251,13 @@ def _size(frame: Frame, kind: Kind) -> tuple[int, int]:
     return frame.size[0] * kind.detail, frame.size[1] * kind.detail
 
 
-def _can_layer(frame: Frame, count: int) -> bool:
-    """Whether one pass can write `count` layers, each with its own depth."""
+def _can_layer(frame: Frame, count: int, images: Mapping[str, Image]) -> bool:
+    """Whether one pass can write the `count` layers of `images`, each with its own depth."""
     gpu = frame.gpu
-    return DepthArray.available(gpu.ctx) and (count <= PER_INVOCATION or gpu.version_code >= 400)
+    if not DepthArray.available(gpu.ctx) or (count > PER_INVOCATION and gpu.version_code < 400):
+        return False
+    try:
+        gpu.targets.framebuffer(tuple(images.values()), depth=True)
+    except NoLayersError:
+        return False
+    return True

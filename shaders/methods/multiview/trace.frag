@@ -67,7 +67,7 @@ vec4 ray(vec2 start, vec2 lens_point, uint layers, uint near)
         float enough = k == next ? MOST : 0.95;
         if (more && found) {
             met += part * min(1.0, (1.0 - met.a) / part.a);
-            next = (near >> (k + 1) & 1u) != 0u ? k + 1 : NONE;
+            next = (near >> k >> 1 & 1u) != 0u ? k + 1 : NONE;
             there = q;
         }
         found = passed || met.a > enough;
