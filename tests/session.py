@@ -126,7 +126,12 @@ class Session:
         left, right = (middle, slice(4, round(0.2 * width))), (middle, slice(round(0.3 * width), width - 4))
         for part, same, unlike in ((left, own, other), (right, other, own)):
             assert np.abs(seen[part] - same[part]).mean() < 1.0 < np.abs(seen[part] - unlike[part]).mean(), part
+        assert all((seen[part] == self.saved_as_seen()[part]).all() for part in (left, right)), "saved as it is shown"
         self.window.after(lambda: self.window.key("w"), "action: Wipe")
+
+    def saved_as_seen(self) -> np.ndarray:
+        """What is seen without the interface, as it is saved, (h, w, 3)."""
+        return np.asarray(Image.open(self.window.saved("ctrl+alt+s"))).astype(float)
 
     def error_map(self) -> None:
         width, height = self.settings.image.size
@@ -164,8 +169,10 @@ class Session:
         window.after(lambda: window.key("t"), "action: Plots")
 
     def record(self) -> None:
-        """Two seconds, with another focus and another method on the way."""
+        """Two seconds of a wipe, with another focus and another method on the way."""
         window = self.window
+        window.after(lambda: window.key("w"), "action: Wipe", again_s=60.0)
+        begins = self.saved_as_seen()
         window.after(lambda: window.key("ctrl+m"), "action: Record", again_s=60.0)
         window.wait("^film: 1 s", act=lambda: None)
         window.after(lambda: window.key("bracketright"), "settings: lens.focus_distance", again_s=60.0)
@@ -177,7 +184,12 @@ class Session:
             frames = [frame.to_ndarray(format="rgb24").astype(float) for frame in opened.decode(video=0)]
         assert len(frames) == count >= 60
         width, height = self.settings.image.size
-        assert psnr(frames[0][:height, :width], self.headless()) > 35.0, "it begins with what was seen"
+        begun = psnr(frames[0][:height, :width], begins)
+        assert begun > 35.0, f"it begins with what was seen: {begun:.1f} dB"
+        assert psnr(begins, self.headless()) < 30.0, "which is two pictures"
+        ends = self.saved_as_seen()
+        assert psnr(frames[-1][:height, :width], ends) > 35.0 > psnr(ends, begins), "and ends with it"
+        window.after(lambda: window.key("w"), "action: Wipe", again_s=60.0)
 
     def reopen(self) -> None:
         """The settings and pixels of a picture come back after everything was changed."""
@@ -217,5 +229,6 @@ def near(match, wanted: float) -> bool:
 
 
 def psnr(a: np.ndarray, b: np.ndarray) -> float:
-    """Of values 0 to 255, dB."""
-    return float(10.0 * np.log10(255.0**2 / max(np.mean((a - b) ** 2), 1e-9)))
+    """Of brightness, BT.709 of values 0 to 255, dB: a film holds colour at half the size."""
+    apart = (a - b) @ [0.2126, 0.7152, 0.0722]
+    return float(10.0 * np.log10(255.0**2 / max(np.mean(apart**2), 1e-9)))

@@ -64,8 +64,9 @@ class App:
         self.panels_shown: bool = True
         self.panels_focused = False
         self.asking_for_path = False
-        self.sought = ""
-        """Title of a panel to be opened and scrolled to."""
+        self.scrolled_from: float | None = None
+        self.sought: str | None = None
+        """Title of a panel to be opened and scrolled to, empty to scroll back to what was in view before."""
         self.quitting = False
         self.when_drawn: list[Callable[[np.ndarray], None]] = []
         """Called once by the window with what it shows, (h, w, 4) uint8."""

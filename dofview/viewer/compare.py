@@ -39,9 +39,9 @@ class Compare(Tool):
     def actions(self) -> tuple[Action, ...]:
         return (
             Action("Wipe", int(imgui.Key.w), "W", "Show two pictures, with a line between them that can be dragged.",
-                   lambda app: self._toggle(app, Arrangement.WIPE), "Compare"),
+                   lambda app: self._toggle(Arrangement.WIPE), "Compare"),
             Action("Grid of all", int(imgui.Key.k), "K", "Show the pictures of all methods at once.",
-                   lambda app: self._toggle(app, Arrangement.GRID), "Compare"),
+                   lambda app: self._toggle(Arrangement.GRID), "Compare"),
             Action("Flip", int(FLIP), "V", "Show the other picture while the key is held.", lambda app: None,
                    "Compare"),
             Action("Next other picture", int(imgui.Key.n), "N", "Compare with the next method.",
@@ -110,9 +110,8 @@ class Compare(Tool):
         if self.mode is Arrangement.WIPE:
             self.split = imgui.slider_float("line##split", self.split, 0.0, 1.0)[1]
 
-    def _toggle(self, app: App, mode: Arrangement) -> None:
+    def _toggle(self, mode: Arrangement) -> None:
         self.mode = Arrangement.ONE if self.mode is mode else mode
-        app.sought = self.title if self.mode is mode else ""
 
     def _next(self, app: App, step: int) -> None:
         index = METHODS.index(self.other) + step

@@ -42,10 +42,20 @@ def draw(app: App) -> None:
         # A narrow panel of large text cuts names off before controls.
         imgui.push_item_width(-min(LABEL_EM * imgui.get_font_size(), 0.55 * panel))
         imgui.push_text_wrap_pos(0.0)
+        _scroll(app)
         _panels(app)
         imgui.pop_text_wrap_pos()
         imgui.pop_item_width()
         imgui.end()
+
+
+def _scroll(app: App) -> None:
+    """Remember where the panels stood before one was sought, and go back there when it is not wanted any more."""
+    if app.sought and app.scrolled_from is None:
+        app.scrolled_from = imgui.get_scroll_y()
+    elif app.sought == "" and app.scrolled_from is not None:
+        imgui.set_scroll_y(app.scrolled_from)
+        app.scrolled_from = None
 
 
 def _panels(app: App) -> None:
@@ -56,7 +66,7 @@ def _panels(app: App) -> None:
         if tool.title:
             _panel(tool.title, tool.opened, partial(tool.panel, app), sought=app.sought == tool.title)
     _panel("Scene", False, lambda: panels.scene_panel(app.scene))
-    app.sought = ""
+    app.sought = None
 
 
 def _panel(title: str, opened: bool, content: Callable[[], None], sought: bool = False) -> None:

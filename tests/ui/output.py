@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
+import resource
 import sys
 import time
 from pathlib import Path
@@ -23,7 +25,7 @@ from dofview.viewer.app import App
 from dofview.viewer.compare import Compare
 from dofview.viewer.filming import Shows
 from dofview.viewer.focusing import Focusing
-from dofview.viewer.output import KEYFRAMES, KINDS, LIVE, Output
+from dofview.viewer.output import KEYFRAMES, KINDS, LIVE, TURNTABLE, Output
 from dofview.viewer.screen import seen_of
 from dofview.viewer.shots import Shots
 
@@ -38,6 +40,8 @@ def use(context: Context, app: App, host: Host) -> None:
     assert app.settings == before
     films(context, app, folder)
     what_is_seen(context, app, folder)
+    another_size(context, app, folder)
+    out_of_room(context, app, folder)
 
 
 def pictures(context: Context, app: App, folder: Path) -> None:
@@ -183,6 +187,56 @@ def what_is_seen(context: Context, app: App, folder: Path) -> None:
     assert (kept["again"] == seen).all()
     compare.mode, app.tool(Focusing).shown, app.part, app.settings = Arrangement.ONE, False, Part(), before
     context.yield_(2)
+
+
+def another_size(context: Context, app: App, folder: Path) -> None:
+    """The panels go away while a film is made: it goes on in the size it began with."""
+    output = app.tool(Output)
+    output.path, output.kind, output.fps, output.shows = LIVE, KINDS.index(".mp4"), 10, Shows.SEEN
+    before = app.settings.image.size
+    films = set(folder.glob("*.mp4"))
+    output.toggle(app)
+    context.yield_(5)
+    press(context, "h")
+    until(context, lambda: app.settings.image.size != before, "another size")
+    context.yield_(20)
+    assert output.recording, "it goes on"
+    output.toggle(app)
+    press(context, "h")
+    until(context, lambda: app.settings.image.size == before, "the size before")
+    (film,) = set(folder.glob("*.mp4")) - films
+    with av.open(str(film)) as opened:
+        frames = [frame.to_ndarray(format="rgb24") for frame in opened.decode(video=0)]
+    assert {frame.shape[1::-1] for frame in frames} == {tuple(side + side % 2 for side in before)}
+    bars = [frame[[2, -3]].max() for frame in frames]
+    assert bars[0] > 40 and bars[-1] < 40, "the wider picture stands between bars"
+
+
+def out_of_room(context: Context, app: App, folder: Path) -> None:
+    """The disk takes no more: a message says so, what there is plays to within two seconds, the window lives on."""
+    output, soft = app.tool(Output), resource.getrlimit(resource.RLIMIT_FSIZE)
+    output.path, output.kind, output.fps, output.seconds, output.shows = TURNTABLE, 0, 30, 60.0, Shows.PICTURE
+    app.settings = app.settings.with_(method="pinhole")
+    until(context, lambda: not app.busy, "pinhole")
+    output.toggle(app)
+    (part,) = (path for path in folder.glob("*.part.mp4"))
+    until(context, lambda: part.stat().st_size > 30_000, "some of the film", 120.0)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (part.stat().st_size + 60_000, soft[1]))
+    written: list[int] = []
+    HOST[0].after = lambda app: written.extend(round(work.share * 1800) for work in output.work(app))
+    until(context, lambda: not output.recording, "it ends", 120.0)
+    HOST[0].after = lambda app: None
+    resource.setrlimit(resource.RLIMIT_FSIZE, soft)
+    assert "cannot go on writing the film: file too large" in app.message
+    assert not part.with_name(part.name.replace(".part", "")).exists(), "a cut film has not the name of a whole one"
+    playable = 0
+    with contextlib.suppress(av.FFmpegError), av.open(str(part)) as opened:
+        for _ in opened.decode(video=0):
+            playable += 1
+    assert playable >= written[-1] - 60, (playable, written[-1])
+    renders = app.scene_renders
+    app.settings = app.settings.with_(lens=app.settings.lens.model_copy(update={"focus_distance": 2.5}))
+    until(context, lambda: app.scene_renders > renders, "the window lives on")
 
 
 def _shape(app: App) -> tuple[int, int]:

@@ -9,7 +9,6 @@ from imgui_bundle import imgui
 from dofview.methods import METHODS
 from dofview.viewer.app import App
 from dofview.viewer.browser import Browser
-from dofview.viewer.compare import Compare
 from dofview.viewer.heat import Heat
 from dofview.viewer.measure import Measure
 
@@ -98,17 +97,20 @@ def light_and_background(context: Context, app: App, host: Host) -> None:
 
 
 def what_is_asked_for_comes_into_view(context: Context, app: App) -> None:
-    """A key that shows something opens the panel of it, and the panels scroll to it."""
+    """A key that shows what has settings opens the panel of them and scrolls to it, and back when it is not wanted."""
     context.set_ref("settings")
-    inside = {Heat: "gain##gain", Compare: "with##other", Browser: "in place of the picture##inspect"}
-    for key, tool in (("e", Heat), ("w", Compare), ("i", Browser)):
+    inside = {Heat: "gain##gain", Browser: "in place of the picture##inspect"}
+    for key, tool in (("e", Heat), ("i", Browser)):
         context.scroll_to_top("")
         context.item_close(tool.title)
         context.scroll_to_top("")
-        for _ in range(2):
-            context.key_press(_key(key))
-            context.yield_(4)
-            assert context.item_info(f"{tool.title}/{inside[tool]}").rect_clipped.get_height() > 5.0, tool.title
+        context.key_press(_key(key))
+        context.yield_(4)
+        assert context.item_info(f"{tool.title}/{inside[tool]}").rect_clipped.get_height() > 5.0, tool.title
+        assert context.item_info("Lens").rect_clipped.get_height() <= 0.0
+        context.key_press(_key(key))
+        context.yield_(4)
+        assert context.item_info("Lens").rect_clipped.get_height() > 5.0, "and back"
         context.item_close(tool.title)
     context.scroll_to_top("")
     context.yield_(2)
