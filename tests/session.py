@@ -14,11 +14,13 @@ import numpy as np
 from PIL import Image
 from real_window import Window
 
+from dofview.gl.compose import Box
 from dofview.gl.context import Gpu
 from dofview.methods import METHODS
 from dofview.pipeline import Pipeline
 from dofview.remember import Remembered, read_note
 from dofview.scene.load import load
+from dofview.seen.layout import cells
 from dofview.settings import Settings
 
 Place = tuple[float, float]
@@ -45,6 +47,7 @@ class Session:
         self.gaze()
         self.every_method()
         self.compare()
+        self.grid()
         self.error_map()
         self.measure_all()
         self.record()
@@ -128,6 +131,20 @@ class Session:
             assert np.abs(seen[part] - same[part]).mean() < 1.0 < np.abs(seen[part] - unlike[part]).mean(), part
         assert all((seen[part] == self.saved_as_seen()[part]).all() for part in (left, right)), "saved as it is shown"
         self.window.after(lambda: self.window.key("w"), "action: Wipe")
+
+    def grid(self) -> None:
+        """Every method has its picture in its cell."""
+        self.window.after(lambda: self.window.key("k"), "action: Grid of all")
+        width, height = self.settings.image.size
+        boxes = cells(len(METHODS), Box(0, 0, width, height))[: len(METHODS)]
+        for _ in range(60):
+            seen = self.saved_as_seen()
+            spread = [seen[b.top : b.top + b.height // 2, b.left : b.left + b.width].std() for b in boxes]
+            if min(spread) > 10.0:
+                break
+        assert min(spread) > 10.0, spread
+        self.keep("grid", self.window.seen())
+        self.window.after(lambda: self.window.key("k"), "action: Grid of all")
 
     def saved_as_seen(self) -> np.ndarray:
         """What is seen without the interface, as it is saved, (h, w, 3)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable
 from functools import partial
@@ -42,6 +43,8 @@ class Output(Tool):
         self.seconds = 4.0
         self.fps = 30
         self.keys: list[Settings] = []
+        self.rack_to: float | None = None
+        """Where the focus goes, scene units; None for three times as far as it is."""
         self._filming: Filming | None = None
 
     def actions(self) -> tuple[Action, ...]:
@@ -123,6 +126,8 @@ class Output(Tool):
             self.seconds = imgui.slider_float("length##film", self.seconds, 0.5, 60.0, "%.1f s", flags)[1]
         if self.path == KEYFRAMES:
             self._keys_panel(app)
+        if self.path == RACK:
+            self._rack_panel(app)
         imgui.end_disabled()
         if imgui.button("Finish the film##film" if self.recording else "Record##film"):
             self.toggle(app)
@@ -131,6 +136,17 @@ class Output(Tool):
         if self._filming is not None:
             self._filming.close()
             self._filming = None
+
+    def _rack_panel(self, app: App) -> None:
+        here = app.settings.lens.focus_distance
+        imgui.text_disabled(f"the focus goes from {here:.4g}, where it is")
+        farthest = 4.0 * max(app.settings.camera.distance, math.dist(*app.scene.bounds), 1e-3)
+        flags = imgui.SliderFlags_.logarithmic | imgui.SliderFlags_.always_clamp
+        changed, to = imgui.slider_float("to##film", self._rack_end(app), farthest / 1000.0, farthest, "%.4g", flags)
+        self.rack_to = to if changed else self.rack_to
+
+    def _rack_end(self, app: App) -> float:
+        return self.rack_to if self.rack_to is not None else 3.0 * app.settings.lens.focus_distance
 
     def _keys_panel(self, app: App) -> None:
         imgui.text_disabled(f"{len(self.keys)} keyframes, passed at equal times; two or more make a film")
@@ -149,12 +165,11 @@ class Output(Tool):
         if self.path == GAZE:
             return self._gaze(app)
         settings, frames = app.settings, frame_count(self.seconds, self.fps)
-        here = settings.lens.focus_distance
         if self.path == KEYFRAMES:
             return keyframes(settings, frames, self.keys), frames
-        return turntable(settings, frames) if self.path == TURNTABLE else rack_focus(
-            settings, frames, here, 3.0 * here
-        ), frames  # fmt: skip
+        if self.path == TURNTABLE:
+            return turntable(settings, frames), frames
+        return rack_focus(settings, frames, settings.lens.focus_distance, self._rack_end(app)), frames
 
     def _gaze(self, app: App) -> tuple[Path_, int]:
         """The last gaze trace, as long as it is."""

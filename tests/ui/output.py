@@ -25,7 +25,7 @@ from dofview.viewer.app import App
 from dofview.viewer.compare import Compare
 from dofview.viewer.filming import Shows
 from dofview.viewer.focusing import Focusing
-from dofview.viewer.output import KEYFRAMES, KINDS, LIVE, TURNTABLE, Output
+from dofview.viewer.output import KEYFRAMES, KINDS, LIVE, RACK, TURNTABLE, Output
 from dofview.viewer.screen import seen_of
 from dofview.viewer.shots import Shots
 
@@ -123,6 +123,11 @@ def films(context: Context, app: App, folder: Path) -> None:
     with av.open(str(film)) as opened:
         assert sum(1 for _ in opened.decode(video=0)) == 5
     assert math.isfinite(app.settings.lens.radius) and app.settings == before, "a film changes no settings"
+
+    output.path, output.rack_to, lens = RACK, 1.5, app.settings.lens
+    plan, frames = output._planning(app)
+    assert plan(0).lens.focus_distance == lens.focus_distance and frames == 5
+    assert math.isclose(plan(4).lens.focus_distance, 1.5), "to where it was said"
 
     output.path, output.kind = KEYFRAMES, KINDS.index("/%05d.png")
     output.toggle(app)
