@@ -14,6 +14,7 @@ from PIL import Image
 
 sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[1] / "tests")]
 
+import real_window  # noqa: E402
 from real_window import Window, screen, tools_missing  # noqa: E402
 from session import Session  # noqa: E402
 
@@ -39,6 +40,7 @@ def main() -> None:
     """Go through the session."""
     if tools_missing():
         raise SystemExit(f"this needs {tools_missing()}")
+    real_window.PATIENCE_S = 1200.0  # a large picture's reference without a GPU, beside whatever else is running
     gpu = create_headless()
     with tempfile.TemporaryDirectory() as folder, screen(Path(folder)) as environment:
         work = Path(folder) / "work"

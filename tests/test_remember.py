@@ -95,3 +95,29 @@ def test_bad_values_of_a_preset_are_named_and_the_rest_is_kept(tmp_path):
         path.write_text(text)
         with pytest.raises(SettingsError, match=r"bad\.toml: not a TOML preset"):
             read_preset(path, ODD)
+
+
+def test_what_is_seen_is_rendered_and_made_again_from_its_picture(tmp_path, capfd):
+    seen, again, alone = (tmp_path / f"{name}.png" for name in ("seen", "again", "alone"))
+    picture = ["render", "demo:crossing", "--size", "96x64", "--method", "pinhole"]
+    assert main([*picture, "-o", str(alone)]) == 0
+    assert main([*picture, "--beside", "mipmap", "--wipe", "0.25", "--in-focus", "-o", str(seen)]) == 0
+    remembered = read_note(seen).seen
+    assert remembered is not None and read_note(alone).seen is None
+    assert (remembered.other, remembered.split, remembered.in_focus) == ("mipmap", 0.25, True)
+    assert main(["render", "--like", str(seen), "-o", str(again)]) == 0
+    pixels = [np.asarray(Image.open(path)).astype(int) for path in (seen, again, alone)]
+    assert (pixels[0] == pixels[1]).all() and np.abs(pixels[0] - pixels[2])[:, 28:].mean() > 2.0
+    assert main([*picture, "--error-map", "signed", "--gain", "8", "-o", str(tmp_path / "map.exr")]) == 0
+    capfd.readouterr()
+    for wrong, words in (
+        (["--gain", "3"], "with --error-map"),
+        (["--grid", "--wipe", "0.3"], "--grid, or --beside"),
+        (["--beside", "nobody"], "accepted: pinhole"),
+        (["--wipe", "2"], "wipe is '2'"),
+        (["--error-map", "none"], "absolute, squared"),
+    ):
+        assert main([*picture, *wrong, "-o", str(tmp_path / "no.png")]) == 2
+        said = capfd.readouterr().err
+        assert words in said and said.count("\n") == 1, said
+    assert not (tmp_path / "no.png").exists()
