@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+
+import moderngl
 import numpy as np
 from host import Context, Host, drive, press, until
 from imgui_bundle import imgui
@@ -59,6 +62,7 @@ def use(context: Context, app: App, host: Host) -> None:
     grid(context, app, host)
     loupe(context, app, host)
     as_without_a_window(context, app, host)
+    nothing_grows(context, app, host)
     browser(context, app, host)
 
 
@@ -221,6 +225,32 @@ def as_without_a_window(context: Context, app: App, host: Host) -> None:
         app.part = Part(0.2, 0.3, 0.4, 0.4)
     app.part, focusing.shown, compare.mode = Part(), False, Arrangement.ONE
     rests(context, app, "one picture again")
+
+
+def nothing_grows(context: Context, app: App, host: Host) -> None:
+    """The same round of comparisons again leaves no object of OpenGL behind."""
+    compare, heat, focusing, counts = app.tool(Compare), app.tool(Heat), app.tool(Focusing), []
+    for _ in range(3):
+        for mode in (Arrangement.WIPE, Arrangement.GRID, Arrangement.ONE):
+            compare.mode, heat.on, focusing.shown = mode, mode is Arrangement.GRID, mode is Arrangement.WIPE
+            press(context, "h")
+            until(context, lambda: not any(app.tool(Pictures).outdated(app, n) for n in compare.names(app)), mode)
+            press(context, "h")
+        for radius in (0.05, 0.06, 0.08, 0.1):
+            app.settings = app.settings.with_(lens=app.settings.lens.model_copy(update={"radius": radius}))
+            context.yield_(3)
+        host.inside(context, lambda app: counts.append(living(app)))
+    assert counts[-1] == counts[-2] and counts[-1] > 20, counts
+    rests(context, app, "after the rounds")
+
+
+def living(app: App) -> int:
+    """Objects of OpenGL that Python holds and that were not released."""
+    app.gpu.ctx.gc()
+    kinds = (moderngl.Texture, moderngl.TextureArray, moderngl.Framebuffer, moderngl.Renderbuffer, moderngl.Buffer,
+             moderngl.VertexArray, moderngl.Program)  # fmt: skip
+    found = (thing for thing in gc.get_objects() if isinstance(thing, kinds))
+    return sum(not isinstance(thing.mglo, moderngl.InvalidObject) for thing in found)
 
 
 def app_inverse_depth(context: Context, app: App, host: Host, share: tuple[float, float]) -> float:
