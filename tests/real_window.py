@@ -132,13 +132,13 @@ class Window:
         """Do `act` and wait for a line that it brings about."""
         return self.wait(pattern, since=len(self.said()), act=act, **how)  # type: ignore[arg-type]
 
-    def saved(self, chord: str) -> Path:
-        """Press a key that saves a file, and return its path."""
-        return Path(self.after(lambda: self.key(chord), r"^saved (\S+)")[1].rstrip(":"))
+    def saved(self, chord: str, kind: str = r"dofview-\d") -> Path:
+        """Press a key that saves a file, and return its path; a slow one may come after the next of another `kind`."""
+        return Path(self.after(lambda: self.key(chord), rf"^saved (\S*{kind}\S*)")[1].rstrip(":"))
 
     def seen(self) -> np.ndarray:
         """What the window shows, (h, w, 3) float 0 to 255."""
-        return np.asarray(Image.open(self.saved("F12")).convert("RGB")).astype(float)
+        return np.asarray(Image.open(self.saved("F12", "dofview-window")).convert("RGB")).astype(float)
 
     def complaints(self) -> str:
         """What it wrote to its standard error."""

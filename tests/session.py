@@ -143,12 +143,12 @@ class Session:
             if min(spread) > 10.0:
                 break
         assert min(spread) > 10.0, spread
-        self.keep("grid", self.window.seen())
+        self.keep("grid", seen)
         self.window.after(lambda: self.window.key("k"), "action: Grid of all")
 
     def saved_as_seen(self) -> np.ndarray:
         """What is seen without the interface, as it is saved, (h, w, 3)."""
-        return np.asarray(Image.open(self.window.saved("ctrl+alt+s"))).astype(float)
+        return np.asarray(Image.open(self.window.saved("ctrl+alt+s", "dofview-seen"))).astype(float)
 
     def error_map(self) -> None:
         width, height = self.settings.image.size
