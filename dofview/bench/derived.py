@@ -102,7 +102,6 @@ def splatting(facts: Facts) -> Fetches:
     across = 2 * (int(widest) // TILE + 1) + 1
     return {
         "methods/splatting/hidden_limit.frag": (1 + 12 * in_front) * facts.canvas * hidden,
-        "render/close.frag": facts.canvas * hidden,
         "methods/splatting/brightness.frag": 4 * facts.coarser(1, MOST_LEVELS) * bool(levels),
         "methods/splatting/points.frag": 9 * facts.canvas,
         "methods/splatting/reduce.frag": 4 * facts.canvas * bool(levels),
@@ -157,9 +156,8 @@ def layered(facts: Facts) -> Fetches:
         return 4 * (1 + int(str(defines["PEELS"])) + ("SKY" in defines) + ("HAS_BACK" in defines))
 
     return {
-        "render/close.frag": facts.fragments("render/close.frag"),
-        "methods/layered/depths.frag": (4 if peels <= 4 else 8) * facts.canvas,
-        "methods/layered/content.frag": 2 * (1 + (peels > 4)) * facts.canvas,
+        "methods/layered/depths.frag": max(peels, 2) * facts.canvas,
+        "methods/layered/content.frag": (1 + (peels > 4)) * facts.canvas,
         "methods/layered/join.frag": facts.each("methods/layered/join.frag", joining),
         "pass/gaussian.frag": facts.each("pass/gaussian.frag", lambda defines: 2 * int(str(defines["TAPS"])) - 1),
         "pass/reduce.frag": 4 * facts.fragments("pass/reduce.frag"),

@@ -17,8 +17,8 @@ SCENES = ("demo:foreground", "demo:background", "demo:rail")
 SIZE, COC_PX, VIEWS = (256, 192), 8.0, 64
 MOST_RATIO = 1.5
 SHARED = ("render/resolve.frag", "render/depth_range.frag", "render/occupancy.frag", "render/squared_error.frag",
-          "pass/sum.frag")  # fmt: skip
-"""What every method has, or what is made once for a camera: no method's page derives it."""
+          "pass/sum.frag", "render/close.frag", "render/peeled.frag")  # fmt: skip
+"""What every method has, what is made once for a camera, or helps to draw the scene: no method's page derives it."""
 
 
 class Counted(NamedTuple):
