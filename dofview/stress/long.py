@@ -1,6 +1,6 @@
 """Long runs: the same thing hundreds of times, after which nothing may be left over.
 
-Memory is compared at one place: after each cycle of a run the driver has finished what was begun.
+Memory is compared at one place: at rest, when every method has drawn the same small picture and that is finished.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from dofview.scene.load import load
 from dofview.settings import ImageSettings, Settings
 from dofview.stress import shapes
 from dofview.stress.bench import CAMERA
-from dofview.stress.living import Alive, alive, memory_kb
+from dofview.stress.living import Alive, alive
 
 WARM_UP = 100
 """Until then shader variants are still coming, which are kept on purpose."""
@@ -156,16 +156,15 @@ def repeat(run: Run, name: str, cycles: int, on_cycle: Callable[[int], None] = l
     else:
         for _ in range(WARM_UP):
             act()
-    before, memory = _rested(run), []
+    before = _rested(run)
     for cycle in range(cycles):
         act()
         run.gpu.ctx.finish()
-        memory.append(memory_kb())
         on_cycle(cycle + 1)
     after = _rested(run)
     return Growth(
-        name, cycles, after.objects - before.objects, _slope(memory), after.files - before.files,
-        after.threads - before.threads, after.children - before.children,
+        name, cycles, after.objects - before.objects, (after.memory_kb - before.memory_kb) / cycles,
+        after.files - before.files, after.threads - before.threads, after.children - before.children,
     )  # fmt: skip
 
 
@@ -174,9 +173,3 @@ def _rested(run: Run) -> Alive:
     for _ in range(run.begin()):
         run.switch()
     return alive(run.gpu.ctx)
-
-
-def _slope(memory: list[float]) -> float:
-    """Growth per cycle, kB: between the least of the first and of the last quarter, which size and luck do not move."""
-    quarter = max(len(memory) // 4, 1)
-    return (min(memory[-quarter:]) - min(memory[:quarter])) / max(len(memory) - quarter, 1)
