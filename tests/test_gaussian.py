@@ -55,6 +55,12 @@ def test_a_kernel_has_the_variance_it_was_asked_for(sigma: float):
     assert len(weights) - 1 == max(math.ceil(3.0 * sigma), 1)
 
 
+@pytest.mark.parametrize("sigma", [-0.05, -0.3, -0.55])
+def test_a_kernel_can_take_variance_away(sigma: float):
+    middle, beside = kernel(sigma)
+    assert middle + 2.0 * beside == pytest.approx(1.0) and 2.0 * beside == pytest.approx(-sigma * sigma)
+
+
 def test_bilinear_taps_are_the_same_kernel():
     weights = kernel(2.3)
     spread = np.zeros(len(weights) + 1)

@@ -101,6 +101,8 @@ SKIPS = (
     Skip("multiview", "layers that a pixel's rays cannot meet anything in", "tile masks say so",
          "multiview layers skipped"),
     Skip("layered", "further peels", "a peel found nothing", "layered peels skipped", parameters={"peels": 8}),
+    Skip("layered", "parts of the scene, in all passes behind a surface", "no sample of them is behind it",
+         "peel parts skipped", parameters={"peels": 4}, scenes=tuple(f"{name}@200k" for name in SCENES)),
     Skip("layered", "layers without surfaces", "no cell has any in their range", "layered layers empty",
          parameters={"layers": 24}),
     Skip("layered", "filtering and blending in tiles", "nothing of a layer can be seen there", "layered tiles skipped"),

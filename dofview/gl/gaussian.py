@@ -32,10 +32,11 @@ COARSE_SIGMA = 2.5
 def kernel(sigma: float, truncation: float = TRUNCATION) -> tuple[float, ...]:
     """Weights w₀ … w_R of a symmetric kernel at texel distances 0 … R: their sum is 1 and their variance `sigma`².
 
-    R is `truncation` · `sigma` rounded up, at least 1.
+    R is `truncation` · `sigma` rounded up, at least 1. A negative `sigma` takes the variance σ² away, which can be done
+    by a little, to what is smooth by texels or will be blurred.
     """
     if sigma <= 0.0:
-        return (1.0, 0.0)
+        return (1.0 + sigma * sigma, -0.5 * sigma * sigma) if sigma < 0.0 else (1.0, 0.0)
     distance = np.arange(max(math.ceil(truncation * sigma), 1) + 1, dtype=float)
     twice = np.where(distance > 0, 2.0, 1.0)
 

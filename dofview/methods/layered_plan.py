@@ -130,15 +130,15 @@ def cascade(layers: Sequence[Layer]) -> list[float]:
     """σ of the filter after each layer joined, in texels of its level, so that each layer ends up with its own blur.
 
     Variances add. A layer's own is spent on coming to its level, on the filters from there on, and on each expansion
-    to twice the size; what a level change takes too much of is saved in the steps that follow.
+    to twice the size. Between dense layers a change of size takes more than lies between them: then σ is negative, and
+    the filter takes the variance σ² away before (`gl.gaussian.kernel`).
     """
-    filters, debt = [], 0.0
+    filters = []
     for layer, following in zip(layers, [*layers[1:], None], strict=True):
         level = following.level if following else 0
         rest = following.sigma**2 - entry_variance(level) if following else 0.0
-        needed = layer.sigma**2 - entry_variance(layer.level) - rest - expand_variance(layer.level, level) - debt
-        debt = max(-needed, 0.0)
-        filters.append(math.sqrt(max(needed, 0.0)) / 2**layer.level)
+        needed = layer.sigma**2 - entry_variance(layer.level) - rest - expand_variance(layer.level, level)
+        filters.append(math.copysign(math.sqrt(abs(needed)), needed) / 2**layer.level)
     return filters
 
 
