@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from dofview.cli import flags, main
 from dofview.cli.runs import Comparing
@@ -77,6 +78,26 @@ def refused(done: Done, status: int, *words: str) -> None:
     assert "Traceback" not in done.err and len(done.err) < 1000
     for word in words:
         assert word in done.err, (word, done.err)
+
+
+@pytest.mark.parametrize(
+    "name, steps",
+    [("layered", ["frame_pinhole", "frame_peel1", "layered_front_00_layer", "layered_front_00_joined",
+                  "layered_front_01_blurred", "layered_front_buffer"]),
+     ("pyramid", [f"pyramid_sub-image_-1_{step}" for step in ("culled", "filled", "matte", "blurred")])],
+)  # fmt: skip
+def test_every_step_of_a_method_is_written_to_be_looked_at(run: Run, tmp_path: Path, name: str, steps: list[str]):
+    """Whatever `inspect` keeps, beside the picture, which stays the same."""
+    plain, folder = tmp_path / "plain.npy", tmp_path / "steps" / name
+    common = ("render", "demo:foreground", "--method", name, "--size", "64x48")
+    assert run(*common, "-o", str(plain)).status == 0
+    done = run(*common, "-o", str(tmp_path / "again.npy"), "--images", str(folder))
+    assert done.status == 0 and set(done.facts["images"]) == {path.name for path in folder.iterdir()}
+    assert {f"{step}.png" for step in steps} <= set(done.facts["images"])
+    assert np.array_equal(np.load(plain), np.load(tmp_path / "again.npy"))
+    shown, step = (np.asarray(Image.open(folder / f"{name}.png")) for name in ("frame_pinhole", steps[-1]))
+    assert shown[..., :3].std() > 10 and step.shape[2] == 4 and step[..., 3].min() == 0 < step[..., 3].max()
+    assert run(*common, "-o", str(plain), "--images", str(plain)).status == 3
 
 
 def test_render_gives_the_pipelines_picture_and_its_facts(run: Run, view: Path, tmp_path: Path, gpu: Gpu):

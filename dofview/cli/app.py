@@ -80,7 +80,7 @@ def view(
 def render(
     scene: Spec | None = None, /, *, output: Annotated[Path, Parameter(name=("--output", "-o"))], view: View = None,
     method: MethodName = None, camera: CameraName = None, like: Path | None = None, preset: Path | None = None,
-    given: Given,
+    images: Path | None = None, given: Given,
 ) -> None:  # fmt: skip
     """Render one picture without a screen. The last line printed is a JSON object with its time and counts.
 
@@ -92,10 +92,14 @@ def render(
         A PNG or EXR saved by dofview: its scene and settings are taken, flags override them.
     preset
         A TOML preset of lens, method and parameters.
+    images
+        A folder for the images that the method makes on its way, every step of it, as PNG.
     """
     from dofview.cli.picture import render_to
 
-    render_to(scene, output, given, view=view, method=method, camera=camera, like=like, preset=preset)
+    render_to(
+        scene, output, given, view=view, method=method, camera=camera, like=like, preset=preset, images=images
+    )  # fmt: skip
 
 
 def record(

@@ -16,6 +16,7 @@ from dofview.bench.timing import timed
 from dofview.cli.beside import seen_for
 from dofview.cli.chosen import applied, settings_for
 from dofview.cli.flags import Given
+from dofview.cli.images import made_folder, with_every_step, write_images
 from dofview.cli.runs import Timing
 from dofview.errors import InputError
 from dofview.gl.context import create_headless
@@ -33,9 +34,10 @@ MOST_NOTES = 5
 
 def render_to(
     spec: str | None, output: Path, given: Given, *, view: Path | None, method: str | None, camera: str | None,
-    like: Path | None, preset: Path | None,
+    like: Path | None, preset: Path | None, images: Path | None = None,
 ) -> None:  # fmt: skip
-    """Render one picture into `output` and print its facts, the last line as JSON."""
+    """Render one picture into `output`, what the method makes on its way into `images`, and print its facts, the last
+    line as JSON."""
     timing = checked(Timing, given.get("timing", {}), "render")
     remembered = read_note(like) if like is not None else None
     if spec is None and remembered is not None:
@@ -46,12 +48,16 @@ def render_to(
     size = applied(base, given, view=view, method=method).image.size
     seen = seen_for(given, size, remembered.seen if remembered else None)
     export.check_writable(output)
+    if images is not None:
+        made_folder(images)
     scene = load(spec)
     if remembered is not None:
         settings = applied(base, given, view=view, method=method)
     else:
         settings = settings_for(scene, spec, given, view=view, method=method, camera=camera, preset=preset)
     tell_warnings(scene)
+    if images is not None:
+        settings = with_every_step(settings)
     with headless(scene) as pipeline:
         result, milliseconds = timed(pipeline, settings, timing.frames)
         _save(pipeline, result, settings, seen, output, note(spec, settings, seen))
@@ -71,6 +77,8 @@ def render_to(
             "scene": spec,
             "output": str(output),
         }
+        if images is not None:
+            facts["images"] = write_images(pipeline.gpu.targets, settings.method, images)
     print(jsonlib.dumps(facts))
 
 

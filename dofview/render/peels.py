@@ -52,7 +52,8 @@ def find_behind(
                 array.render(moderngl.TRIANGLES, vertices=count, first=first)
     target.depth_mask = True
     kept = [part for part, query in zip(parts, queries, strict=True) if query.samples]
-    gpu.profile.count("peel parts skipped", len(parts) - len(kept))
+    if gpu.profile.may_skip("peel parts skipped"):
+        gpu.profile.count("peel parts skipped", len(parts) - len(kept))
     return Runs(_joined(kept), draws.culled)
 
 
