@@ -127,7 +127,7 @@ def multiview(facts: Facts) -> Fetches:
     """Of the layers that a mask leaves, half are walked before the ray stops; one or two probes in each, and its
     colour."""
     params, guard = facts.settings.params.multiview, facts.frame.guard // MASK_TILE
-    mask = facts.image("multiview/mask")[..., 0]
+    mask = facts.image("multiview/tile mask")[..., 0]
     seen = np.ascontiguousarray(mask[guard : mask.shape[0] - guard, guard : mask.shape[1] - guard])
     layers = np.unpackbits(seen.view(np.uint8)).sum() / seen.size
     count = (facts.counts["multiview layers in reach"] + facts.counts["multiview layers skipped"]) / mask.size
@@ -135,8 +135,8 @@ def multiview(facts: Facts) -> Fetches:
     return {
         "methods/multiview/occupied.frag": count / 4 * facts.canvas,
         "methods/multiview/spread.frag": 2 * 3 * reached * facts.canvas / 16,
-        "methods/multiview/cones.frag": 2 * facts.fragments("methods/multiview/cones.frag"),
-        "methods/multiview/trace.frag": (2 + params.samples * (1 + 2.5 * (layers + 1) / 2)) * facts.picture,
+        "methods/multiview/cones.frag": 4 * facts.fragments("methods/multiview/cones.frag"),
+        "methods/multiview/trace.frag": (3 + params.samples * (1 + 2.5 * (layers + 1) / 2)) * facts.picture,
     }
 
 
