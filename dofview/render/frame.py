@@ -132,7 +132,9 @@ class Frame:
         before = self.peel(index - 1)
         if before is None:
             return None
-        surfaces = self._peeled(index) if self.gpu.software else self._surfaces(f"peel{index}", before.inverse_depth)
+        # The quick way finds depths, and what is seen through is more than those.
+        quick = self.gpu.software and not self.scene.blended
+        surfaces = self._peeled(index) if quick else self._surfaces(f"peel{index}", before.inverse_depth)
         ended = self.peel_is_empty(index) and self.gpu.profile.may_skip("layered peels skipped")
         return None if ended else surfaces
 
@@ -187,11 +189,13 @@ class Frame:
         if self._held(name, color, inverse_depth):
             return Surfaces(color, inverse_depth)
         passed = self.gpu.samples_passed
-        own_depth = self._with_depth(color, inverse_depth) if self.gpu.software else None
+        # What is seen through needs to know what it is laid over, also where a peel has nothing.
+        nothing = self.background if self.scene.blended else (0.0, 0.0, 0.0)
+        own_depth = self._with_depth(color, inverse_depth) if self.gpu.software and not self.scene.blended else None
         with self.gpu.profile.section(f"scene/{name}"):
             draw_scene(
                 self.gpu, self.scene, self.projection(), (color, inverse_depth), lights=self.lights, behind=behind,
-                background=(0.0, 0.0, 0.0) if behind else self.background, passed=passed if behind else None,
+                background=nothing if behind else self.background, passed=passed if behind else None,
                 framebuffer=own_depth,
             )  # fmt: skip
         if behind:

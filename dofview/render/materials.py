@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 
 from dofview.gl.context import Gpu
 from dofview.gl.passes import draw
+from dofview.render.blended import is_translucent
 from dofview.scene.model import Material, Texture
 
 _FILTER = {
@@ -55,16 +56,18 @@ class GpuMaterial:
     textures: dict[str, tuple[moderngl.Texture, moderngl.Sampler]]
     features: dict[str, bool]
     double_sided: bool
+    translucent: bool
 
 
 class MaterialSet:
     """All materials of a scene; pictures and samplers shared between them exist once."""
 
-    def __init__(self, gpu: Gpu, materials: tuple[Material, ...]):
+    def __init__(self, gpu: Gpu, materials: tuple[Material, ...], translucent_colors: frozenset[int] = frozenset()):
+        """`translucent_colors` are the numbers of those materials whose vertex colours let light through."""
         self._gpu = gpu
         self._pictures: dict[tuple, moderngl.Texture] = {}
         self._samplers: dict[object, moderngl.Sampler] = {}
-        self.items = tuple(self._upload(material) for material in materials)
+        self.items = tuple(self._upload(m, number in translucent_colors) for number, m in enumerate(materials))
 
     def release(self) -> None:
         for texture in self._pictures.values():
@@ -74,7 +77,7 @@ class MaterialSet:
         self._pictures.clear()
         self._samplers.clear()
 
-    def _upload(self, material: Material) -> GpuMaterial:
+    def _upload(self, material: Material, translucent_colors: bool) -> GpuMaterial:
         textures: dict[str, tuple[moderngl.Texture, moderngl.Sampler]] = {}
         features: dict[str, bool] = {}
         transforms: dict[str, Vec4] = {}
@@ -99,7 +102,9 @@ class MaterialSet:
             occlusion_strength=material.occlusion_strength,
             alpha_cutoff=material.alpha_cutoff if material.alpha_mode == "MASK" else 0.5, **transforms,
         )  # fmt: skip
-        return GpuMaterial(block, textures, features, material.double_sided)
+        return GpuMaterial(
+            block, textures, features, material.double_sided, is_translucent(material, translucent_colors)
+        )
 
     def _picture(self, texture: Texture, color: bool) -> moderngl.Texture:
         mirrored = tuple(wrap == "mirror" for wrap in _wraps(texture))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from itertools import groupby
 from operator import itemgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import moderngl
 import numpy as np
@@ -102,24 +102,35 @@ def draw_scene(
     `values` are what it reads. `geometry` names a geometry shader and `framebuffer` its layered target. `passed` counts
     the samples that were drawn. `draws` are what to draw where that is known; else what the view can reach. `sparse`
     says that little of the picture is open to what lies `behind`.
+
+    What is seen through is laid over what it covers, the farthest first (`_blend`). What another test leaves out, a
+    layered target, and depths alone have it as it is: there where half opaque.
     """
     target = framebuffer or gpu.targets.framebuffer(into, depth=True)
+    plain = geometry is None and reject is None
     _clear(gpu, target, into, (*background, background_alpha))
     if behind is not None:
         _close(gpu, behind)
         reject, textures = "render/reject_peel.glsl", {**(textures or {}), "peeled_inverse_depth": behind}
 
-    def run(into: moderngl.Framebuffer, depth_func: str, defines: Mapping[str, object]) -> None:
+    def run(
+        into: moderngl.Framebuffer, depth_func: str, defines: Mapping[str, object], through: bool = False
+    ) -> None:  # fmt: skip
         into.use()
         gpu.ctx.viewport = (0, 0, *size)
-        gpu.ctx.enable_only(moderngl.DEPTH_TEST)
+        gpu.ctx.enable_only(moderngl.DEPTH_TEST | (moderngl.BLEND if through else 0))
         gpu.ctx.depth_func = depth_func
         _draw_all(
-            gpu, scene, view, seen, lights, reject=reject, geometry=geometry, textures=textures or {},
-            blocks=blocks or {}, values={"lod_bias": lod_bias, **(values or {})}, defines=defines,
+            gpu, scene, view, in_order if through else solid, lights, reject=reject, geometry=geometry,
+            textures=textures or {}, blocks=blocks or {}, values={"lod_bias": lod_bias, **(values or {})},
+            defines=defines, blended=through,
         )  # fmt: skip
 
     size, defines, seen = into[0].size, dict(defines or {}), in_view(scene, view) if draws is None else draws
+    blends = bool(scene.blended) and plain and not defines.keys() & {"DEPTH_ONLY", "SURFACES"}
+    items = scene.materials.items
+    solid = Runs([r for r in seen.ranges if not items[r[0]].translucent], seen.culled) if blends else seen
+    in_order = Runs(scene.blended.farthest_first(view.clip_from_local) if blends else [], 0)
     gpu.profile.count("pieces culled", seen.culled)
     nearest_first = reject is not None and framebuffer is None and gpu.software and not sparse
     if nearest_first:
@@ -128,19 +139,49 @@ def draw_scene(
         run(gpu.targets.framebuffer(into[1:2], depth=True), "<", {**defines, "DEPTH_ONLY": 1})
     with passed or nullcontext():
         run(target, "==" if nearest_first else "<", defines)
+        if blends:
+            _blend(gpu, target, len(into), lambda func, extra: run(target, func, {**defines, **extra}, through=True))
+
+
+def _blend(
+    gpu: Gpu, target: moderngl.Framebuffer, attachments: int, run: Callable[[str, Mapping[str, object]], None]
+) -> None:  # fmt: skip
+    """Lay what is seen through over `target`, then say where it is: at the nearest point that is half opaque, as long
+    as something solid is behind it, and else wherever there is anything of it. `run(depth test, defines)` draws it."""
+    gpu.ctx.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
+    gpu.ctx.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
+    target.depth_mask = False
+    target.color_mask = _masks(attachments, colors=True)
+    run("<", {"BLENDED": 1})
+    if attachments > 1:
+        gpu.ctx.blend_func = moderngl.ONE, moderngl.ZERO
+        target.color_mask = _masks(attachments, colors=False)
+        target.depth_mask = True
+        run("<", {})
+        target.depth_mask = False
+        run("==", {"AT_INFINITY": 1})
+    target.depth_mask = True
+    target.color_mask = _masks(attachments)
+
+
+def _masks(attachments: int, colors: bool | None = None) -> Any:
+    """What may be written: the colours alone, all else alone, or everything."""
+    first = (colors is not False,) * 3 + (colors is not True,)
+    rest = (colors is not True,) * 4
+    return first if attachments == 1 else (first, *[rest] * (attachments - 1))
 
 
 def _draw_all(
-    gpu: Gpu, scene: GpuScene, view: Projection, draws: Runs, lights: Lights, *, reject: str | None,
-    geometry: str | None, textures: Textures, blocks: Blocks, values: Mapping[str, object],
-    defines: Mapping[str, object],
+    gpu: Gpu, scene: GpuScene, view: Projection, draws: Runs, lights: Lights, *,
+    reject: str | None, geometry: str | None, textures: Textures, blocks: Blocks, values: Mapping[str, object],
+    defines: Mapping[str, object], blended: bool,
 ) -> None:  # fmt: skip
-    """Draw `draws` into what is bound."""
+    """Draw `draws` of the scene's triangles, or of its `blended` ones, into what is bound."""
     if reject is not None:
         defines = {**defines, "HAS_REJECT": 1, "REJECT": reject}
     bound = by_material(
         gpu, scene, view, draws, lights, geometry=geometry, textures=textures, blocks=blocks, values=values,
-        defines=defines,
+        defines=defines, blended=blended,
     )  # fmt: skip
     for array, ranges in bound:
         for first, count in ranges:
@@ -150,7 +191,7 @@ def _draw_all(
 def by_material(
     gpu: Gpu, scene: GpuScene, view: Projection, draws: Runs, lights: Lights, *, values: Mapping[str, object],
     defines: Mapping[str, object], geometry: str | None = None, textures: Textures | None = None,
-    blocks: Blocks | None = None,
+    blocks: Blocks | None = None, blended: bool = False,
 ) -> Iterator[tuple[moderngl.VertexArray, list[tuple[int, int]]]]:  # fmt: skip
     """Bind each material of `draws` in turn, and give what is to be drawn with it: an array, and (first, count) of the
     ranges of its indices."""
@@ -174,7 +215,7 @@ def by_material(
         for unit, sampler in samplers:
             sampler.use(unit)
         ranges = [(first, count) for _, first, count in runs]
-        yield scene.array(program.gl), ranges
+        yield scene.array(program.gl, blended), ranges
         for unit, sampler in samplers:
             sampler.clear(unit)
         gpu.profile.count("draws", len(ranges))

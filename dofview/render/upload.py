@@ -14,6 +14,7 @@ import moderngl
 import numpy as np
 
 from dofview.gl.context import Gpu
+from dofview.render.blended import Blended
 from dofview.render.materials import MaterialSet
 from dofview.scene.model import Instance, Primitive, Scene, instance_bounds
 
@@ -40,8 +41,9 @@ class GpuScene:
     def __init__(self, gpu: Gpu, scene: Scene):
         self.scene = scene
         self.origin = _origin(scene)
-        self.materials = MaterialSet(gpu, scene.materials)
+        self.materials = MaterialSet(gpu, scene.materials, _translucent_colors(scene))
         vertices, triangles, self.draws = _bake(scene, self.origin)
+        self.blended = self._blended(gpu, vertices, triangles)
         self._vertices = gpu.ctx.buffer(vertices.tobytes()) if len(vertices) else None
         self._indices = gpu.ctx.buffer(triangles.tobytes()) if len(triangles) else None
         self.culling = True
@@ -49,7 +51,7 @@ class GpuScene:
         self._corners = _corners(self.draws)
         self._ranges = np.array([(d.material, d.first, d.count) for d in self.draws], np.int64).reshape(-1, 3)
         self._ctx = gpu.ctx
-        self._arrays: dict[moderngl.Program, moderngl.VertexArray] = {}
+        self._arrays: dict[tuple[moderngl.Program, bool], moderngl.VertexArray] = {}
 
     @property
     def local_bounds(self) -> np.ndarray:
@@ -85,16 +87,18 @@ class GpuScene:
             zip(*(x.tolist() for x in (material[starts], first[starts], np.add.reduceat(count, starts))), strict=True)
         )
 
-    def array(self, program: moderngl.Program) -> moderngl.VertexArray:
-        """Return the scene's vertex array for `program`, which may use any subset of the attributes."""
+    def array(self, program: moderngl.Program, blended: bool = False) -> moderngl.VertexArray:
+        """Return the scene's vertex array for `program`, which may use any subset of the attributes; or that of its
+        `blended` triangles, in the order in which they were sorted last."""
         # By identity, not by OpenGL's name for it: names are used again after a shader is reloaded.
-        if program not in self._arrays:
+        if (program, blended) not in self._arrays:
             names = [name if name in program else None for name in VERTEX_NAMES]
             widths = VERTEX_FORMAT.split()
             layout = " ".join(w if n else f"{int(w[0]) * 4}x" for w, n in zip(widths, names, strict=True))
             content = [(self._vertices, layout, *[n for n in names if n])]
-            self._arrays[program] = self._ctx.vertex_array(program, content, self._indices, index_element_size=4)
-        return self._arrays[program]
+            indices = self.blended.indices if blended else self._indices
+            self._arrays[program, blended] = self._ctx.vertex_array(program, content, indices, index_element_size=4)
+        return self._arrays[program, blended]
 
     def release(self) -> None:
         for array in self._arrays.values():
@@ -103,7 +107,19 @@ class GpuScene:
         for buffer in (self._vertices, self._indices):
             if buffer is not None:
                 buffer.release()
+        self.blended.release()
         self.materials.release()
+
+    def _blended(self, gpu: Gpu, vertices: np.ndarray, triangles: np.ndarray) -> Blended:
+        """Triangles of materials that are seen through, of all `triangles` (n, 3) into `vertices`."""
+        materials = np.repeat([d.material for d in self.draws], [d.count // 3 for d in self.draws]).astype(np.int64)
+        translucent = np.array([item.translucent for item in self.materials.items], bool)
+        chosen = np.flatnonzero(translucent[materials]) if translucent.any() else np.zeros(0, np.int64)
+        return Blended(gpu, materials[chosen], triangles[chosen], vertices[:, :3])
+
+
+def _translucent_colors(scene: Scene) -> frozenset[int]:
+    return frozenset(p.material for p in scene.primitives if p.colors is not None and (p.colors[:, 3] < 1.0).any())
 
 
 def _corners(draws: tuple[Draw, ...]) -> np.ndarray:

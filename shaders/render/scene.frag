@@ -5,6 +5,9 @@
 // and says which fragments to leave out. One that wants surfaces instead of light, to shade them later, defines SURFACES:
 // the colour is then the base colour, and normal, roughness, emission, metalness and occlusion follow the depth. One that
 // wants nothing but depth, to find out first which fragments need be shaded at all, defines DEPTH_ONLY.
+//
+// A surface that is seen through is drawn by BLENDED with its opacity in alpha, to be laid over what is there. Where it
+// is the last thing there is, it counts as a surface of its own: AT_INFINITY finds the pixels that have no other.
 in Vertex
 {
     vec3 position;
@@ -69,7 +72,12 @@ void main()
     Surface surface = read_surface();
 #endif
 #ifdef ALPHA_TEST
+#if defined(AT_INFINITY)
+    if (surface.alpha < 1.0 / 255.0) discard;
+    gl_FragDepth = 1.0;
+#elif !defined(BLENDED)
     if (surface.alpha < material.alpha_cutoff) discard;
+#endif
 #endif
 #if defined(DEPTH_ONLY)
     return;
@@ -88,5 +96,8 @@ void main()
     color = light(surface.base_color);
 #else
     color = light(shade(surface, normalize(eye - vertex.position)));
+#endif
+#ifdef BLENDED
+    color.a = clamp(surface.alpha, 0.0, 1.0);
 #endif
 }

@@ -89,7 +89,7 @@ class Materials:
         mode: AlphaMode = "MASK" if cut_out else "OPAQUE"
         if alpha < 1.0:
             mode = "BLEND"
-            self.notes.count("blended material", "blended materials", "shown as cut-out at 0.5")
+            self.notes.count("blended material", "blended materials", "cut out at 0.5 by multiview")
         emissive = _color(numbers.get("Ke"), (0.0, 0.0, 0.0), BRIGHTEST)
         if "map_Ke" in maps and not any(emissive):
             emissive = (1.0, 1.0, 1.0)
