@@ -19,6 +19,11 @@ out vec4 color;
 // Distance of the taps in units of sigma: one texel of level l - 1 where the blur is that of level l exactly.
 const float REACH = 1.1;
 
+#ifdef SMOOTHED
+// A straight silhouette covers a half; a little more, so that the blur is that of the silhouette on both its sides.
+const float FULL_COVER = 0.6;
+#endif
+
 // Variance per axis, px^2, that reducing to `level` and magnifying it bilinearly gives, mean over positions: each
 // [1 3 3 1] / 8 adds 3/4 texel^2, interpolation 1/6 texel^2 of the level.
 float level_variance(int level)
@@ -36,24 +41,19 @@ float ring_variance(float d)
 
 #ifdef SMOOTHED
 // DoB where blurred foreground is near (eq 11, figure 8b): read from a coarse level of B, so that blur fades out across
-// a silhouette instead of stopping there. Where none is, it is the pixel's own.
-float smoothed_sigma(vec2 position, float own)
+// a silhouette instead of stopping there. `widest` is the blur of that foreground; where there is none, it is the `own`.
+float smoothed_sigma(vec2 position, float widest, float own)
 {
-    float n = paper_level(textureLod(don, 0.5 * position / vec2(textureSize(don, 0)), 0.0).r);
+    float n = paper_level(widest);
     if (n <= 0.0) return own;
     int lower = min(int(n), LAST_LEVEL - 1);
     return between_levels(even_zbn, odd_zbn, lower, n - float(lower), position).y;
 }
 #endif
 
-void main()
+// The picture around `position`, blurred by `sigma`.
+vec3 blurred(vec2 position, float sigma, float coc)
 {
-    vec2 position = gl_FragCoord.xy;
-    float coc = coc_radius(texelFetch(inverse_depth, ivec2(position), 0).r), sigma = lens.sigma * abs(coc);
-#ifdef SMOOTHED
-    sigma = smoothed_sigma(position, sigma);
-#endif
-
 #ifdef PAPER
     float m = paper_level(sigma);
     float reach = exp2(m - 1.0), share = m <= 0.0 ? 0.0 : 1.0;
@@ -85,5 +85,27 @@ void main()
 #endif
         total += vec4(tap.rgb, 1.0) * weight;
     }
-    color = vec4(total.rgb / total.a, 1.0);
+    return total.rgb / total.a;
+}
+
+void main()
+{
+    vec2 position = gl_FragCoord.xy;
+    float coc = coc_radius(texelFetch(inverse_depth, ivec2(position), 0).r), sigma = lens.sigma * abs(coc);
+#ifdef SMOOTHED
+    float widest = textureLod(don, 0.5 * position / vec2(textureSize(don, 0)), 0.0).r;
+    float smoothed = smoothed_sigma(position, widest, sigma), near = 1.0;
+#ifndef PAPER
+    // Of what is around a place with the blur `sigma`, the part `cover` has the foreground's. Where that is little, strands
+    // of grass say, the place is seen between them as sharp as it is; from a silhouette on, it is as blurred as that.
+    float cover = (smoothed - sigma) / max(widest - sigma, 1e-4);
+    near = smoothed > sigma ? smoothstep(0.0, FULL_COVER, cover) : 1.0;
+#endif
+    vec3 found = vec3(0.0);
+    if (near < 1.0) found = (1.0 - near) * blurred(position, sigma, coc);
+    if (near > 0.0) found += near * blurred(position, smoothed, coc);
+    color = vec4(found, 1.0);
+#else
+    color = vec4(blurred(position, sigma, coc), 1.0);
+#endif
 }
