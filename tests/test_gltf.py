@@ -435,3 +435,11 @@ def test_padding_and_unknown_chunks_after_the_data_are_ignored(tmp_path: Path) -
     path = tmp_path / "a.glb"
     path.write_bytes(glb(file.document(None), bytes(file.binary)) + b"trailing bytes")
     assert load(path).triangle_count == 1
+
+
+def test_a_primitive_without_positions_is_counted_as_the_validator_does_and_not_shown(tmp_path: Path) -> None:
+    file = GltfFile()
+    file.add_mesh(file.add_primitive(NORMAL=TRIANGLE + 1))
+    scene = load(file.write(tmp_path / "a.gltf"))
+    assert (scene.mesh_triangles, scene.triangle_count) == (1, 0)
+    assert scene.warnings == ("1 primitive without a triangle not shown",)

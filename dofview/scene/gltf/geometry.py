@@ -40,7 +40,9 @@ class Geometry:
         if fields.data.get("indices") is not None:
             corners = self.accessors.count(fields, "indices")
         else:
-            corners = self.accessors.count(attributes, "POSITION") if has_positions(fields) else 0
+            # Without positions there is nothing to show; the validator counts what the other attributes say.
+            names = ["POSITION"] if has_positions(fields) else list(attributes.data)[:1]
+            corners = self.accessors.count(attributes, names[0]) if names else 0
         return corners // 3 if mode == TRIANGLES else max(corners - 2, 0)
 
     def read(self, fields: Fields, weights: tuple[float, ...], material: int, unlit: bool) -> Primitive | None:
