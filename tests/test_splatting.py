@@ -317,3 +317,22 @@ def test_steps_are_kept_by_name(planes: Pipeline):
         *(f"splatting/{n}" for n in ("hidden", "L0", "L1", "L2", "fetches", "k_n", "reach", "largest")),
     }
     assert wanted <= names
+
+
+@pytest.mark.parametrize(("reduction", "size", "way"), [
+    (Reduction.NONE, (300, 300), "scatter"), (Reduction.NONE, (40, 30), "gather"),
+    (Reduction.LEVELS, (300, 300), "gather"),
+])  # fmt: skip
+def test_software_gathers_only_as_many_points_as_its_loops_may_turn(
+    gpu: Gpu, planes: Pipeline, monkeypatch: pytest.MonkeyPatch, reduction: Reduction, size: tuple[int, int], way: str
+):
+    """Beyond, llvmpipe ends the shader: a room of 294 px blur came out black (7 dB)."""
+    if not gpu.software:
+        pytest.skip("a GPU has no such limit")
+    taken: list[str] = []
+    for name in ("gather", "scatter"):
+        monkeypatch.setattr(f"dofview.methods.splatting._{name}", lambda *_, name=name: taken.append(name))
+    lens = MIDDLE.model_copy(update={"radius": 16.0})
+    settings = settings_for(lens, size, guard_px=0).with_params(reduction=reduction, computation="gather")
+    planes.render(settings)
+    assert taken == [way]

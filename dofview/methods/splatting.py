@@ -36,6 +36,11 @@ SHARP_PX_OF_SHAPES = 0.01
 """What SHARP_PX is for a disc, for lenses that are none, whose sprites reach farther."""
 
 
+MOST_TURNS = 50_000
+"""Points that a pixel may look at on llvmpipe: it ends a shader after 65535 turns of its loops, and the picture is
+black where unmerged sprites are hundreds of pixels wide."""
+
+
 class HiddenTest(StrEnum):
     """In what the tests for the hidden image measure depth."""
 
@@ -114,6 +119,8 @@ def render(frame: Frame, params: Params) -> Image:
     points = make_points(recipe, params)
     ways = {Computation.GATHER: _gather, Computation.SCATTER: _scatter}
     way = faster(frame, ways, params) if params.computation is Computation.AUTO else params.computation
+    if way is Computation.GATHER and frame.gpu.software and _turns(frame, points) > MOST_TURNS:
+        way = Computation.SCATTER
     picture = recipe.image("picture")
     ways[way](recipe, points, picture, params)
     return picture
@@ -169,6 +176,12 @@ def _scatter(recipe: Recipe, points: Points, picture: Image, params: Params) -> 
         for level, image in enumerate(points.hidden):
             points.draw_sprites(recipe, image, level, (m1, m2), clear=level == 0)
     recipe.draw("compose.frag", picture, defines=points.flags, images=textures)
+
+
+def _turns(frame: Frame, points: Points) -> int:
+    """How many single points a pixel may have to look at, at most; merged ones are few."""
+    reach = 2 * int(points.finest * points.sprite.extent) + 3
+    return min(reach, frame.size[0]) * min(reach, frame.size[1])
 
 
 def _has_front(coc_range: tuple[float, float], delta: float) -> bool:

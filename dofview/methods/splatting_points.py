@@ -56,6 +56,11 @@ class Points:
         """How often points were merged."""
         return len(self.visible) - 1
 
+    @property
+    def finest(self) -> float:
+        """The largest CoC radius that points of single pixels can have, px."""
+        return self.widest if self.levels == 0 or self.merged_from == EVERY else 2.0 * self.merged_from
+
     def upper(self, level: int) -> float:
         """CoC radius from which points of `level` are merged into the next, px."""
         return EVERY if level == self.levels else self.merged_from * 2.0**level
