@@ -90,7 +90,11 @@ def large(gpu: Gpu, scene: str) -> tuple[list[str], str]:
     measured = Measured(gpu, scene)
     name = f"`{scene.partition(':')[2].partition('@')[0]}` {measured.triangles:,}".replace(",", " ")
     rows = [line(name, "accumulation", *(f"{measured.view * rays:.0f}" for rays in RAYS), "")]
-    took = {layers: [measured.frame(measured.multiview(rays, layers)) for rays in RAYS] for layers in LAYERS}
+    took: dict[int, list[float]] = {layers: [] for layers in LAYERS}
+    # Layers in turns, so that a machine that becomes slower does not show in what one costs over the other.
+    for rays in RAYS:
+        for layers, times in took.items():
+            times.append(measured.frame(measured.multiview(rays, layers)))
     for layers, times in took.items():
         ratio = max(time / eight for time, eight in zip(times, took[8], strict=True)) if layers > 8 else 0.0
         rows.append(line("", layers, *(f"{time:.0f}" for time in times), f"{ratio:.2f}" if ratio else ""))
