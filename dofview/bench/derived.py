@@ -152,8 +152,9 @@ def layered(facts: Facts) -> Fetches:
 
     def filling(defines: dict[str, object]) -> int:
         if defines["KNOWN"] == KNOWN:
-            return 8
-        return 4 * (1 + int(str(defines["PEELS"])) + ("SKY" in defines) + ("HAS_BACK" in defines))
+            return 4
+        in_focus = 0 if "EMPTY" in defines else 1 + int(str(defines["PEELS"])) + ("SKY" in defines)
+        return 4 * (in_focus + ("HAS_BACK" in defines))
 
     return {
         "methods/layered/depths.frag": max(peels, 2) * facts.canvas,
@@ -163,7 +164,7 @@ def layered(facts: Facts) -> Fetches:
         "pass/reduce.frag": 4 * facts.fragments("pass/reduce.frag"),
         "pass/expand.frag": facts.fragments("pass/expand.frag"),
         "pass/pull.frag": facts.each("pass/pull.frag", filling),
-        "pass/push.frag": 4 * facts.fragments("pass/push.frag"),
+        "pass/push.frag": 2 * facts.fragments("pass/push.frag"),
         "methods/layered/final.frag": (peels + 4) * facts.picture,
     }  # fmt: skip
 
