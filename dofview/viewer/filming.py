@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dofview.errors import DofviewError
 from dofview.gl.compose import fitted
 from dofview.gl.targets import Image
 from dofview.metrics import srgb_decode
@@ -48,6 +49,8 @@ class Filming:
         self._image, self._seen = app.settings.image, seen_of(app)
         self._size = app.window_size if shows is Shows.WINDOW and plan is None else self._image.size
         self._began = self._due = time.monotonic()
+        self._ended = False
+        self._failed: DofviewError | None = None
         self._encoder = Encoder(writer(film, self._size, fps))
 
     @property
@@ -80,6 +83,8 @@ class Filming:
 
     def live(self, app: App, image: Image) -> None:
         """Take `image`, what is seen in this frame, when it is time for it; nothing along a path."""
+        if self._failed is not None:
+            raise self._failed
         now = time.monotonic()
         if self._plan is not None or now < self._due or app.result is None or app.shown is None:
             return
@@ -96,10 +101,12 @@ class Filming:
 
     def close(self) -> None:
         """Finish the file; OutputError when it cannot be."""
+        self._ended = True
         self._encoder.close()
 
     def abandon(self) -> None:
         """Stop; what was written of a film stays under the name of a part."""
+        self._ended = True
         self._encoder.abandon()
 
     def _fitted(self, app: App, image: Image) -> np.ndarray:
@@ -108,13 +115,18 @@ class Filming:
         return image.pixels()
 
     def _add_window(self, app: App, pixels: np.ndarray) -> None:
+        if self._ended:
+            return
         if (pixels.shape[1], pixels.shape[0]) != self._size:
             image = app.gpu.targets.image("film window", pixels.shape[1::-1], dtype="f1", linear=True)
             opaque = np.array(pixels)
             opaque[..., 3] = 255
             image.write(opaque)
             pixels = fitted(app.gpu, image, self._size, "film fitted").pixels()
-        self._add(srgb_decode(pixels / np.float32(255.0)) if self._linear else pixels)
+        try:
+            self._add(srgb_decode(pixels / np.float32(255.0)) if self._linear else pixels)
+        except DofviewError as error:
+            self._failed = error  # said in the next frame: nobody listens after this one is drawn
 
     def _add(self, pixels: np.ndarray) -> None:
         self._encoder.add(np.ascontiguousarray(pixels[..., :3]))
