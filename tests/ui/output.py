@@ -41,6 +41,7 @@ def use(context: Context, app: App, host: Host) -> None:
     films(context, app, folder)
     what_is_seen(context, app, folder)
     another_size(context, app, folder)
+    whole_window(context, app, folder)
     out_of_room(context, app, folder)
 
 
@@ -215,6 +216,33 @@ def another_size(context: Context, app: App, folder: Path) -> None:
     assert {frame.shape[1::-1] for frame in frames} == {tuple(side + side % 2 for side in before)}
     bars = [frame[[2, -3]].max() for frame in frames]
     assert bars[0] > 40 and bars[-1] < 40, "the wider picture stands between bars"
+
+
+def whole_window(context: Context, app: App, folder: Path) -> None:
+    """A film of the window has what the window hands over, fitted when that is of another size."""
+    output, size = app.tool(Output), app.window_size
+    shots = [np.random.default_rng(n).integers(0, 256, (size[1], size[0], 4), dtype=np.uint8) for n in range(2)]
+    shots.append(np.full((size[1] // 2, size[0], 4), 200, np.uint8))
+    given: list[np.ndarray] = []
+
+    def hand_over(app: App) -> None:
+        promised, app.when_drawn = app.when_drawn, []
+        for take in promised:
+            given.append(shots[min(len(given), 2)])
+            take(given[-1])
+
+    output.path, output.kind, output.fps, output.shows = LIVE, KINDS.index("/%05d.png"), 30, Shows.WINDOW
+    before = set(folder.glob("dofview-film-*"))
+    HOST[0].after = hand_over
+    output.toggle(app)
+    until(context, lambda: len(given) >= 4, "four frames")
+    output.toggle(app)
+    HOST[0].after = lambda app: None
+    (film,) = {path for path in folder.glob("dofview-film-*") if path.is_dir()} - before
+    frames = [np.asarray(Image.open(path)) for path in sorted(film.iterdir())]
+    assert len(frames) >= 4 and all((frames[n] == shots[n][..., :3]).all() for n in range(2))
+    assert frames[3].shape == frames[0].shape and frames[3][size[1] // 2].min() == 200 and frames[3][0].max() == 0
+    output.shows = Shows.SEEN
 
 
 def out_of_room(context: Context, app: App, folder: Path) -> None:
