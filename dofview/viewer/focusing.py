@@ -72,10 +72,9 @@ class Focusing(Tool):
     def update(self, app: App) -> None:
         if not self.shown or app.result is None:
             return
-        settings = app.settings
-        frame = app.pipeline.frame(settings, guard=method(settings.method).GUARD_BAND)
-        wanted = (frame.geometry_key, settings.image, settings.lens, self.band)
+        settings, wanted = app.settings, (app.picture_key, app.generation, self.band)
         if wanted != self._drawn or self._overlay is None or self._overlay not in app.gpu.targets:
+            frame = app.pipeline.frame(settings, guard=method(settings.method).GUARD_BAND)
             self._overlay = overlays.in_focus(app.gpu, frame, settings.image.size, self.band, "focus band")
             self._drawn = wanted
         app.gpu.targets.touch(self._overlay)
