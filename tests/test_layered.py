@@ -108,11 +108,12 @@ def test_expanding_twice_is_expanding_through_the_level_between():
     assert np.isclose(entry_variance(1), 0.75) and entry_variance(0) == 0.0
 
 
-def content_of(depths: np.ndarray) -> Content:
-    """What `content.frag` gives for one inverse depth per cell, (rows, columns)."""
+def content_of(depths: np.ndarray, farthest: np.ndarray | None = None) -> Content:
+    """What `content.frag` gives for one inverse depth per cell, (rows, columns), or with a `farthest` one."""
     per_depth = SLICES / max(float(depths.max() - depths.min()), 1e-9)
     extremes = np.repeat(depths[..., None], 4, axis=2).astype(np.float32)
-    return Content(float(depths.max()), per_depth, np.zeros((*depths.shape, 4), np.uint32), extremes)
+    bits = np.zeros((*depths.shape, 4), np.uint32)
+    return Content(float(depths.max()), per_depth, bits, extremes, None if farthest is None else farthest[..., None])
 
 
 def test_tiles_of_layers_and_of_their_blur():
@@ -279,6 +280,39 @@ def test_more_than_four_peels(gpu: Gpu):
     assert many.counts["layered peels"] == 8
     assert psnr(many.pixels(), truth) > psnr(one, truth) + 2.0
     pipeline.release()
+
+
+@pytest.mark.parametrize("distribution", [Distribution.UNIFORM_DISC, Distribution.GAUSSIAN])
+def test_a_steep_surface_before_a_lamp_in_focus_is_opaque(gpu: Gpu, distribution: Distribution):
+    """A floor that runs past the camera up to a bright wall in focus, as in a room: layers of it lie nearer to one
+    another than they are blurred. From two cells before the focus on nothing of the wall shines through."""
+    floor, wall = quad((0, 0, 0), (40, 30)), quad((0, 10, -10), (40, 20), material=1)
+    tilt = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], np.float32)
+    floor = dataclasses.replace(floor, positions=floor.positions @ tilt.T - np.float32([0, 0.5, 0]))
+    pipeline = Pipeline(gpu, scene_of([floor, wall], [unlit(0.1, 0.1, 0.1), unlit(5.0, 5.0, 5.0)]))
+    settings = settings_for(Lens(radius=0.4, focus_distance=10.0, distribution=distribution))
+    rows = slice(80, None)  # the floor comes into focus at row 63
+    after = pipeline.render(settings).pixels()[rows]
+    truth = pipeline.render(settings.with_(method="accumulation").with_params(views=64)).pixels()[rows]
+    pipeline.release()
+    assert np.allclose(truth, 0.1)
+    assert np.abs(after - truth).max() < 0.005
+
+
+def test_the_front_buffer_is_opaque_where_nothing_behind_it_is_seen():
+    """Cells of a plane up to a wall in focus, and of a flat object before it, whose rim lets the wall through."""
+    first, sigma = 1.0, 0.5
+    plane = np.tile(np.maximum(np.arange(40) * 4.0 - 40.0, 0.0), (12, 1))  # CoC radii, px: half a px in a px
+    thing = np.where(np.arange(40) >= 10, 12.0, 0.0) * np.ones((12, 1))
+
+    def closed(radii: np.ndarray) -> np.ndarray:
+        depths = LAW.inverse_depth(-radii)
+        return content_of(depths, farthest=depths).closed(LAW, sigma, first)[6]
+
+    assert closed(plane)[:11].max() == 0.0 and closed(plane)[13:].min() == 1.0
+    assert closed(thing)[:11].max() == 0.0 and closed(thing)[12:].min() == 1.0
+    assert closed(np.full((12, 40), 12.0)).min() == 1.0
+    assert closed(np.zeros((12, 40))).max() == 0.0
 
 
 @pytest.mark.parametrize("peels", [1, 2, 4])

@@ -165,7 +165,7 @@ def layered(facts: Facts) -> Fetches:
         "pass/expand.frag": facts.fragments("pass/expand.frag"),
         "pass/pull.frag": facts.each("pass/pull.frag", filling),
         "pass/push.frag": 2 * facts.fragments("pass/push.frag"),
-        "methods/layered/final.frag": (peels + 4) * facts.picture,
+        "methods/layered/final.frag": (peels + 5) * facts.picture,
     }  # fmt: skip
 
 

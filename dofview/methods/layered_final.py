@@ -8,10 +8,13 @@ import numpy as np
 
 from dofview.gl.pull_push import Part, pull_push
 from dofview.gl.targets import Image
-from dofview.gl.tiles import Tiles, upload
+from dofview.gl.tiles import Tiles, grown, upload
 from dofview.methods.layered_peels import COMMON, Peels
 from dofview.methods.layered_plan import Layer
-from dofview.methods.layered_regions import tiled
+from dofview.methods.layered_regions import CELL, tiled
+
+MOST_OVER = 0.25
+"""Part of the canvas that is drawn over rather than told apart."""
 
 
 def final(peels: Peels, focus: Layer, sides: Mapping[str, Image], *, fill: bool, skip: bool) -> Image:
@@ -30,13 +33,33 @@ def final(peels: Peels, focus: Layer, sides: Mapping[str, Image], *, fill: bool,
         lots = [(count, None)]
     if skip and not there.any():
         lots = [(0, None)]
-    for looked, where in lots:
+    draws = [(looked, where, False) for looked, where in lots]
+    if "front" in sides and "PAPER" not in peels.defines:
+        images["closed"], closed = _closed(peels, focus)
+        closed &= peels.window.tiles(deep.shape, 0.0)
+        # Drawn over what is there already; where it is much of the picture, everywhere in its place.
+        if not skip or closed.mean() > MOST_OVER:
+            draws = [(looked, where, True) for looked, where in lots]
+        elif closed.any():
+            draws.append((lots[-1][0], closed, True))
+    for looked, where, close in draws:
         within = _listed(peels, "final", [where])[0] if where is not None else None
+        kind = ({"CLOSE": 1, "CELL": CELL} if close else {}) | ({} if looked else {"EMPTY": 1})
         peels.draw(
-            "final.frag", picture, focus, peels=looked, defines=defines | ({} if looked else {"EMPTY": 1}),
-            images=images, within=within, viewport=None if within else viewport,
+            "final.frag", picture, focus, peels=looked, defines=defines | kind, images=images, within=within,
+            viewport=None if within else viewport,
         )  # fmt: skip
     return picture
+
+
+def _closed(peels: Peels, focus: Layer) -> tuple[Image, np.ndarray]:
+    """Where nothing behind the front buffer can be seen, cell by cell, and the tiles that have something of it."""
+    frame = peels.frame
+    first = float(-frame.coc.radius_px(focus.anchors[1]))
+    image = peels.recipe.image("closed", peels.content.shape[::-1], 1, linear=True)
+    closed = peels.content.closed(frame.coc, frame.lens_block.sigma, first)
+    image.write(closed[::-1, :, None])
+    return image, tiled(grown(closed > 0.0, 1))
 
 
 def _filled(peels: Peels, focus: Layer, back: Image | None, *, skip: bool) -> Image:

@@ -120,10 +120,10 @@ class Peels:
         shape = (-(-size[0] // CELL), -(-size[1] // CELL))
         images = [
             self.recipe.image("content", shape, dtype="u4"), self.recipe.image("content extremes", shape),
-            self.recipe.image("content sky", shape, 1),
+            self.recipe.image("content farthest", shape, 1),
         ]  # fmt: skip
         values = {"nearest": depths.nearest, "slices_per_depth": slices, "background_counts": background_counts}
         defines = {"CELL": CELL, "FIRST": first, "PEELS": to}
         self.recipe.draw("content.frag", images, defines=defines, values=values, images=self.depths)
-        bits, extremes, sky = (image.pixels()[::-1] for image in images)
-        return Content(depths.nearest, slices, bits, extremes, sky, deep)
+        bits, extremes, farthest = (image.pixels()[::-1] for image in images)
+        return Content(depths.nearest, slices, bits, extremes, farthest, deep)

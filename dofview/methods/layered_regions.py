@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dofview.gl.tiles import TILE, coarser, grown
+from dofview.lens import CocLaw
 from dofview.methods.layered_plan import Layer, Plan, cascade, finishing
 
 CELL = 8
@@ -26,6 +27,9 @@ ROUNDING = 2.0**-22
 FARTHEST_SKY = 48
 """Cells. No blur lets the background shine through that far from where it is seen."""
 
+CLOSED = (0.8, 1.5)
+"""σ. A pixel in front of the focus that is the second of these away from all that is not lets nothing of it through."""
+
 REACH = 5.0
 """How far a blur reaches, in σ: less than 1e-6 of it lies beyond."""
 
@@ -34,20 +38,20 @@ class Content:
     """In which slices of depth each cell has surfaces; arrays are (rows, columns), row 0 the bottom one, as in GL.
 
     Made of the two images of `content.frag`: `bits` (rows, columns, 4) uint32, nearest slice first, and `extremes`
-    (rows, columns, 4), the greatest and least 1/z in the first slice of a cell and in the last; and of `sky`, 1 where
-    background can be seen. Peels that hold little have a content of their own, `deep`.
+    (rows, columns, 4), the greatest and least 1/z in the first slice of a cell and in the last; and of `farthest`, the
+    least 1/z of what is visible, 0 where it is background. Peels that hold little have a content of their own, `deep`.
     """
 
     def __init__(
         self, nearest: float, slices_per_depth: float, bits: np.ndarray, extremes: np.ndarray,
-        sky: np.ndarray | None = None, deep: Content | None = None,
+        farthest: np.ndarray | None = None, deep: Content | None = None,
     ):  # fmt: skip
         self.nearest = nearest
         self.slices_per_depth = slices_per_depth
         self._words = [np.ascontiguousarray(bits[..., i]) for i in range(4)]
         self._extremes = [np.ascontiguousarray(extremes[..., i], np.float64) for i in range(4)]
         self.shape = bits.shape[:2]
-        self._sky = np.zeros(self.shape, bool) if sky is None else sky[..., 0] > 0.0
+        self._farthest = np.full(self.shape, np.inf) if farthest is None else farthest[..., 0]
         self._deep = deep
 
     def cells(self, layer: Layer) -> np.ndarray:
@@ -70,17 +74,29 @@ class Content:
         farthest layer, as the background is in it, which a pixel has behind its last surface."""
         if self._deep and not layer.farthest:
             return tiled(self._deep.cells(layer))
-        return np.ones_like(tiled(self._sky))
+        return np.ones_like(tiled(self._farthest > 0.0))
 
     def sky_distance(self) -> np.ndarray:
         """How far the background is that can be seen, px, (rows, columns) float32; along the axes or diagonals, up to
         `FARTHEST_SKY` cells."""
-        found = np.zeros(self.shape, np.float32)
-        near = self._sky
-        for _ in range(FARTHEST_SKY):
-            found += ~near
-            near = grown(near, 1)
-        return found * CELL
+        return _distance(self._farthest <= 0.0, FARTHEST_SKY)
+
+    def closed(self, law: CocLaw, sigma: float, first: float) -> np.ndarray:
+        """Where the front buffer has to be opaque, 0 to 1, (rows, columns) float32: where all that is visible is in
+        front of the focus, as far around as its blur, `sigma` for a CoC radius of 1 px, lets anything through.
+
+        `first` is the CoC radius of the first layer in front of the focus, px: what is nearer to the focus is not
+        opaque in that buffer, but in part in focus.
+        """
+        radius = np.maximum(-law.radius_px(np.minimum(self._farthest, self.nearest)), 0.0)
+        most = math.ceil(CLOSED[1] * sigma * float(radius.max()) / CELL) + 2
+        # What is not in front may be anywhere in its cell. At a silhouette its whole cell is let off, or the rim of
+        # what is in front would be opaque; where a steep surface comes into focus, half of one.
+        behind = radius <= first
+        edges = behind & grown(_jumps(radius, 0, first) | _jumps(radius, 1, first), 1)
+        distance = np.minimum(_distance(behind, most) - 0.5 * CELL, _distance(edges, most) - CELL)
+        inside = _smoothstep(*CLOSED, distance / np.maximum(sigma * radius, 1e-6))
+        return (inside * _smoothstep(first, 2.0 * first, radius)).astype(np.float32)
 
     def filled(self, plan: Plan) -> Plan:
         """The plan without layers that nothing belongs to. Their blur goes to the filters of those that remain."""
@@ -173,6 +189,35 @@ def spread(layers: Sequence[Layer], cells: Sequence[np.ndarray], skip: bool = Tr
     if not skip:
         found[0] = everywhere
     return found
+
+
+def _smoothstep(low: float, high: float, x: np.ndarray) -> np.ndarray:
+    t = np.clip((x - low) / (high - low), 0.0, 1.0)
+    return t * t * (3.0 - 2.0 * t)
+
+
+def _jumps(radius: np.ndarray, axis: int, least: float) -> np.ndarray:
+    """The cells that differ from a neighbour along `axis` by more than `least` and more than 1.5 times what the cells
+    on either side of the two do: at silhouettes, not where a steep surface comes into focus."""
+    change = np.abs(np.diff(np.moveaxis(radius, axis, 0), axis=0))
+    found = np.zeros((len(change) + 1, *change.shape[1:]), bool)
+    if len(change):
+        beside = np.pad(change, ((1, 1), (0, 0)))
+        jump = change > np.maximum(1.5 * np.maximum(beside[:-2], beside[2:]), least)
+        found[:-1] |= jump
+        found[1:] |= jump
+    return np.moveaxis(found, 0, axis)
+
+
+def _distance(there: np.ndarray, most: int) -> np.ndarray:
+    """How far the cells `there` are, px, along the axes or diagonals; up to `most` cells."""
+    found = np.zeros(there.shape, np.float32)
+    for _ in range(most):
+        if there.all() or not there.any():
+            break
+        found += ~there
+        there = grown(there, 1)
+    return (found if there.any() else np.full_like(found, most)) * CELL
 
 
 def _cells(pixels: float) -> int:

@@ -13,7 +13,7 @@ uniform bool background_counts;
 
 layout(location = 0) out uvec4 bits;
 layout(location = 1) out vec4 extremes;  // greatest and least 1/z of the first slice, greatest and least of the last
-layout(location = 2) out float sky;  // 1 where background can be seen
+layout(location = 2) out float farthest;  // least 1/z of what is visible, 0 where it is background
 
 uint slice_of(float inverse_depth)
 {
@@ -32,12 +32,12 @@ void main()
     float inverse_depths[8], least = background_counts ? 0.0 : 1e-37;
     uint first = 128u, last = 0u;
     bits = uvec4(0u);
-    sky = 0.0;
+    farthest = 3e38;
     extremes = vec4(-1.0, 3e38, -1.0, 3e38);
     for (int y = from.y; y < to.y; ++y)
         for (int x = from.x; x < to.x; ++x) {
             vec4 depths = texel_of(depths_first, ivec2(x, y));
-            if (depths.x <= 0.0) sky = 1.0;
+            farthest = min(farthest, max(depths.x, 0.0));
             for (int m = 0; m < 4; ++m) inverse_depths[m] = depths[m];
 #if PEELS > 4
             depths = texel_of(depths_last, ivec2(x, y));

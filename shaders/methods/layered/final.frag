@@ -19,6 +19,17 @@ uniform sampler2D filled;  // half the size
 #endif
 uniform vec4 start;
 
+#ifdef CLOSE
+uniform sampler2D closed;  // of each cell of CELL x CELL pixels, how far nothing behind the front buffer can be seen
+
+// What coverage is missing there was lost between the layers of a steep surface, and what is there stands for it.
+vec4 close(vec4 sum, vec2 place)
+{
+    vec2 cells = place / (float(CELL) * pixel_size * vec2(textureSize(closed, 0)));
+    return sum * mix(1.0, 1.0 / max(sum.a, 1e-4), textureLod(closed, cells, 0.0).r);
+}
+#endif
+
 out vec4 color;
 
 void main()
@@ -26,6 +37,9 @@ void main()
     vec2 place = gl_FragCoord.xy * pixel_size;
 #ifdef HAS_FRONT
     vec4 sum = textureLod(front, place, 0.0);
+#ifdef CLOSE
+    sum = close(sum, place);
+#endif
 #else
     vec4 sum = vec4(0.0);
 #endif
