@@ -12,8 +12,9 @@ import numpy as np
 
 from dofview.gl.passes import draw
 from dofview.gl.targets import Image
+from dofview.lens import CocLaw
 from dofview.methods.method import Recipe
-from dofview.methods.multiview_layers import TILE, Layers
+from dofview.methods.multiview_layers import TILE, Layers, Slabs
 from dofview.methods.multiview_shading import grid, shading
 
 PATCH = 16
@@ -58,6 +59,12 @@ def average(recipe: Recipe, layers: Layers, width: float) -> Cones:
                 sprites=-(-across * down // 2), defines={**light.defines, "PATCH": PATCH, "TILE": TILE},
                 values={**grid(layers), "cone_width": width},
             )  # fmt: skip
-    radii = np.abs(frame.coc.radius_px(np.mean(slabs.bounds(), axis=0)))
     # A bilinear fetch reads two squares along each axis: as far as one and a half of them.
-    return Cones(images, width, 1.5 * np.maximum(width * radii, 1.0) / layers.detail)
+    return Cones(images, width, 1.5 * squares(frame.coc, slabs, width) / layers.detail)
+
+
+def squares(law: CocLaw, slabs: Slabs, width: float) -> np.ndarray:
+    """Sides of the squares of each layer, texels (cones.glsl); `width` is that of a cone per pixel of CoC radius."""
+    front, back = (law.radius_px(bound) for bound in slabs.bounds())
+    middle, half = 0.5 * np.abs(front + back), 0.5 * np.abs(front - back)
+    return np.maximum(width * np.clip(2.0 * (middle - half), 0.0, middle), 1.0)

@@ -5,8 +5,11 @@
 
 uniform float cone_width;  // texels of a layer per pixel of CoC radius
 
-// Side of the squares of layer `k`, texels: the radius of a cone where it passes the middle of the layer.
+// Side of the squares of layer `k`, texels: the radius of a cone where it passes the middle of the layer. A layer in which
+// the focus lies has surfaces that are sharp, which wider squares would blur, so it has those of a texel.
 float square(int k)
 {
-    return max(cone_width * abs(coc_radius(0.5 * (slab_front(k) + slab_back(k)))), 1.0);
+    float front = coc_radius(slab_front(k)), back = coc_radius(slab_back(k));
+    float middle = 0.5 * abs(front + back), half_ = 0.5 * abs(front - back);
+    return max(cone_width * clamp(2.0 * (middle - half_), 0.0, middle), 1.0);
 }
