@@ -48,7 +48,9 @@ def over(*layers: tuple[tuple[float, float, float], float]) -> np.ndarray:
 
 
 @pytest.mark.parametrize("order", [(0, 1, 2), (2, 1, 0), (1, 2, 0)])
-@pytest.mark.parametrize("method", ["pinhole", "accumulation", "splatting", "mipmap", "pyramid", "layered"])
+@pytest.mark.parametrize(
+    "method", ["pinhole", "accumulation", "splatting", "multiview", "mipmap", "pyramid", "layered"]
+)
 def test_panes_lie_over_one_another_whatever_their_order_in_the_file(gpu: Gpu, method: str, order: tuple[int, ...]):
     panes = [quad((0, 0, z), (1, 1), material) for material, z in enumerate((1.0, 0.0, -1.0))]
     materials = [glass(0.9, 0.1, 0.1, 0.3), glass(0.1, 0.9, 0.1, 0.6), glass(0.8, 0.8, 0.1, 0.4), unlit(*WALL)]
@@ -64,9 +66,11 @@ def test_clear_glass_leaves_the_depth_of_what_is_behind_and_has_its_own_before_n
     materials = [glass(1, 1, 1, 0.2), unlit(*WALL)]
     _, depth = middle(gpu, scene_of([pane, quad((0, 0, -3), (4, 4), 1)], materials))
     assert depth == pytest.approx(8.0)
-    pixel, depth = middle(gpu, scene_of([pane], materials))
-    assert depth == pytest.approx(4.0)
-    np.testing.assert_allclose(pixel, 0.2 + 0.8 * 0.3, atol=2e-3)
+    for method in ("pinhole", "multiview"):
+        settings = SETTINGS.with_(method=method, lens=Lens(radius=0.05, focus_distance=4.0))
+        pixel, depth = middle(gpu, scene_of([pane], materials), settings)
+        assert depth == pytest.approx(4.0)
+        np.testing.assert_allclose(pixel, 0.2 + 0.8 * 0.3, atol=2e-3)
 
 
 def test_what_is_behind_a_wall_is_not_seen_through_it(gpu: Gpu):
@@ -98,7 +102,7 @@ def test_very_many_panes_of_two_materials_are_drawn_in_few_runs(gpu: Gpu):
     pipeline.release()
 
 
-@pytest.mark.parametrize("method", ["splatting", "layered", "pyramid", "mipmap"])
+@pytest.mark.parametrize("method", ["splatting", "multiview", "layered", "pyramid", "mipmap"])
 @pytest.mark.parametrize("focus", [4.0, 8.0])
 def test_methods_blur_glass_as_the_reference_does(gpu: Gpu, method: str, focus: float):
     random = np.random.default_rng(3)

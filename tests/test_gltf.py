@@ -363,7 +363,7 @@ def test_what_is_not_shown_is_listed(loaded) -> None:
         "extension KHR_lights_punctual not honoured",
         "2 animations not shown",
         "1 skin not applied: shown as modelled",
-        "1 blended material cut out at 0.5 by multiview",
+        "1 blended material blurred as what is behind where less than half opaque",
         "cameras[0] 'ortho' is not a perspective camera; not offered",
     }
 

@@ -182,7 +182,10 @@ def test_materials_and_groups(loaded) -> None:
     assert (metal.roughness, metal.metallic, metal.alpha_mode, metal.base_color[3]) == (0.25, 1, "BLEND", 0.5)
     assert all(material.double_sided for material in scene.materials)  # the format knows no back
     assert bare.unlit and bare.base_color == (1, 1, 1, 1)
-    assert set(scene.warnings) == {"1 map_Ks texture not shown", "1 blended material cut out at 0.5 by multiview"}
+    assert set(scene.warnings) == {
+        "1 map_Ks texture not shown",
+        "1 blended material blurred as what is behind where less than half opaque",
+    }
 
 
 TEXTURED = SQUARE + "vt 0 0\nvt 1 0\nvt 1 1\nmtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\n"

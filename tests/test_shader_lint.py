@@ -5,11 +5,12 @@ from __future__ import annotations
 import shutil
 import subprocess
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 
 import pytest
-from scenes import three_planes
+from scenes import quad, scene_of, three_planes, unlit
 
 from dofview.data import SHADERS
 from dofview.gl.context import Gpu
@@ -62,6 +63,10 @@ def compiled(session_gpu: Gpu) -> dict[tuple[str, str], str]:
             for settings in variants(name):
                 if fresh.version_code >= method(name).REQUIRES_GL:
                     result = pipeline.render(settings)
+        glass = replace(unlit(1.0, 1.0, 1.0), base_color=(1.0, 1.0, 1.0, 0.5), alpha_mode="BLEND")
+        seen_through = Pipeline(fresh, scene_of([quad((0, 0, 0), (1, 1))], [glass]))
+        seen_through.render(Settings(method="multiview", lens=LENS, image=ImageSettings(size=(48, 36))))
+        seen_through.release()
         pipeline.compare(result, settings)
         # What is left to a GPU to decide, software decides for itself.
         patch.setattr(fresh, "software", False)

@@ -157,6 +157,8 @@ def build(recipe: Recipe, kind: Kind) -> Layers:
             once = kind.layering is not Layering.PASSES and _can_layer(frame, slabs.count, images)
             with recipe.gpu.profile.section("multiview/layers"):
                 _DRAW[kind.layering if once else Layering.PASSES](recipe, kind, images)
+            if frame.scene.blended and not kind.surfaces:
+                _see_through(recipe, kind, images)
         occupied(recipe, slabs, images, tiles, TILE * kind.detail)
     return Layers(slabs, images, tiles, kind)
 
@@ -234,6 +236,22 @@ def _draw_once(recipe: Recipe, kind: Kind, images: dict[str, Image], defines: di
         framebuffer=recipe.gpu.targets.framebuffer(into, depth=True), geometry="methods/multiview/layers.geom",
         values={"closest": closest}, **_drawing(recipe, kind, defines),
     )  # fmt: skip
+
+
+def _see_through(recipe: Recipe, kind: Kind, images: dict[str, Image]) -> None:
+    """Lay blended surfaces, which have no layer of their own, over what the lens centre sees through them."""
+    seen, (color, depth) = recipe.frame.pinhole(), (images["layer_color"], images["layer_inverse_depth"])
+    steps: tuple[tuple[Image, dict[str, object], dict[str, Image]], ...] = (
+        (depth, {"MISSING": 1}, {"layer_color": color}),
+        (color, {}, {"layer_inverse_depth": depth, "pinhole": seen.color}),
+    )
+    for into, defines, textures in steps:
+        for k in range(kind.slabs.count):
+            draw(
+                recipe.gpu, "methods/multiview/see_through.frag", into, defines=defines,
+                textures={**textures, "inverse_depth": seen.inverse_depth}, blocks={"Slabs": kind.slabs},
+                values={"layer": k, "detail": float(kind.detail)}, geometry="pass/to_layer.geom",
+            )  # fmt: skip
 
 
 def _drawing(recipe: Recipe, kind: Kind, defines: dict[str, object]) -> dict:

@@ -177,6 +177,8 @@ class Frame:
         drawn = self.cache.held((self.geometry_key, "pinhole"), "frame/pinhole inverse depth")
         if drawn is not None and drawn in self.gpu.targets:
             return drawn
+        if self.scene.blended:
+            return self.pinhole().inverse_depth  # what is seen through has a depth only before nothing
         depths = self.gpu.targets.image("frame/inverse depth", self.size, components=1)
         with self.gpu.profile.section("scene/depths"):
             draw_scene(

@@ -72,7 +72,9 @@ class Materials:
         if mode is None:
             raise fields.fail("alphaMode", ", ".join(_ALPHA_MODES))
         if mode == "BLEND":
-            self._notes.count("blended material", "blended materials", "cut out at 0.5 by multiview")
+            self._notes.count(
+                "blended material", "blended materials", "blurred as what is behind where less than half opaque"
+            )
         return mode
 
     def _emissive(self, fields: Fields) -> tuple[float, float, float]:

@@ -89,7 +89,9 @@ class Materials:
         mode: AlphaMode = "MASK" if cut_out else "OPAQUE"
         if alpha < 1.0:
             mode = "BLEND"
-            self.notes.count("blended material", "blended materials", "cut out at 0.5 by multiview")
+            self.notes.count(
+                "blended material", "blended materials", "blurred as what is behind where less than half opaque"
+            )
         emissive = _color(numbers.get("Ke"), (0.0, 0.0, 0.0), BRIGHTEST)
         if "map_Ke" in maps and not any(emissive):
             emissive = (1.0, 1.0, 1.0)
