@@ -12,12 +12,14 @@ float slab_back(int k)
     return k + 1 == slabs.count ? slabs.farthest : slabs.nearest - float(k + 1) * slabs.step;
 }
 
-// Whether layer `k` keeps a fragment: its own, and those of its neighbours within the overlap.
+// Whether layer `k` keeps a fragment: its own, and those of its neighbours within the overlap. The last keeps nothing of its
+// neighbour: that would hide what lies behind, and no other layer stops the light there.
 bool slab_holds(int k, float inverse_depth)
 {
     float overlap = slabs.overlap * slabs.step;
-    return (k == 0 || inverse_depth <= slab_front(k) + overlap)
-        && (k + 1 == slabs.count || inverse_depth >= slab_back(k) - overlap);
+    bool last = k + 1 == slabs.count;
+    return (k == 0 || inverse_depth <= slab_front(k) + (last ? 0.0 : overlap))
+        && (last || inverse_depth >= slab_back(k) - overlap);
 }
 
 // Whether it is layer `k` alone that counts a surface: its own, without the overlap.
